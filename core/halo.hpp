@@ -1,0 +1,44 @@
+#pragma once
+// Ghost layers that repeat the far side of a periodic box, and sums over the whole domain. A distributed
+// grid would exchange with its neighbours here; nothing else in the code knows where ghosts come from.
+#include "core/field.hpp"
+#include "core/loop.hpp"
+
+namespace peclet {
+
+struct Periodicity {
+  bool axis[3] = {true, true, true};
+};
+
+/// Fill width ghost layers (at most Layout::ghost_width) along the periodic axes, edges and corners
+/// included. Cells along short axes (fewer cells than ghosts) repeat as often as needed.
+template <class T>
+void fill_periodic_ghosts(const Field<T>& field, const Periodicity& periodic,
+                          int width = Layout::ghost_width) {
+  const Int3 n = field.layout().cells;
+  Int3 low{0, 0, 0}, high = n;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (periodic.axis[axis]) {
+      Box ghosts{low, high};
+      ghosts.low[axis] = 0;
+      ghosts.high[axis] = width;
+      const int m = n[axis];
+      for_each_cell(
+          "core::fill_periodic_ghosts", ghosts, KOKKOS_LAMBDA(int i, int j, int k) {
+            const int depth = axis == 0 ? i : (axis == 1 ? j : k);  // 0 is the layer next to the cells
+            const int source_high = depth % m;
+            const int source_low = m - 1 - source_high;
+            const int ni = axis == 0, nj = axis == 1, nk = axis == 2;
+            const int bi = i * !ni, bj = j * !nj, bk = k * !nk;
+            field(bi + ni * (m + depth), bj + nj * (m + depth), bk + nk * (m + depth)) =
+                field(bi + ni * source_high, bj + nj * source_high, bk + nk * source_high);
+            field(bi - ni * (1 + depth), bj - nj * (1 + depth), bk - nk * (1 + depth)) =
+                field(bi + ni * source_low, bj + nj * source_low, bk + nk * source_low);
+          });
+    }
+    low[axis] = periodic.axis[axis] ? -width : 0;
+    high[axis] = n[axis] + (periodic.axis[axis] ? width : 0);
+  }
+}
+
+}  // namespace peclet

@@ -1,0 +1,194 @@
+#pragma once
+// The only place that names execution policies. Bodies are KOKKOS_LAMBDAs with explicit types.
+//
+// On the host one thread owns whole rows and the x loop is innermost, so that the compiler vectorises it;
+// iterations of one row must therefore be independent of each other. Reductions run over a fixed
+// partition of rows and are bitwise repeatable for a given number of threads.
+#include <string>
+
+#include "core/grid.hpp"
+#include "core/types.hpp"
+
+#if defined(__GNUC__) && !defined(__CUDA_ARCH__)
+#define PECLET_INDEPENDENT_ITERATIONS _Pragma("GCC ivdep")
+#else
+#define PECLET_INDEPENDENT_ITERATIONS
+#endif
+
+namespace peclet {
+
+/// Half-open range of cells.
+struct Box {
+  Int3 low{0, 0, 0}, high{0, 0, 0};
+
+  KOKKOS_INLINE_FUNCTION int extent(int axis) const { return high[axis] - low[axis]; }
+  KOKKOS_INLINE_FUNCTION Index size() const {
+    return static_cast<Index>(extent(0)) * extent(1) * extent(2);
+  }
+  KOKKOS_INLINE_FUNCTION bool contains(int i, int j, int k) const {
+    return i >= low[0] && i < high[0] && j >= low[1] && j < high[1] && k >= low[2] && k < high[2];
+  }
+};
+
+/// Box whose rows along x may start late and end early, because the rest is solid for good.
+struct RowRanges {
+  Box box;
+  Array<int> first, last;  // per row (j - low) + (k - low) * extent(1): cells first <= i < last
+
+  RowRanges() = default;
+  explicit RowRanges(const Box& whole) : box(whole) {}
+  explicit RowRanges(const Int3& cells) : box{{0, 0, 0}, cells} {}
+
+  KOKKOS_INLINE_FUNCTION int begin(Index row) const { return first.data() ? first.data()[row] : box.low[0]; }
+  KOKKOS_INLINE_FUNCTION int end(Index row) const { return first.data() ? last.data()[row] : box.high[0]; }
+  KOKKOS_INLINE_FUNCTION Index number_of_rows() const {
+    return static_cast<Index>(box.extent(1)) * box.extent(2);
+  }
+};
+
+/// body(n) for 0 <= n < count.
+template <class Body>
+void for_each(const std::string& label, Index count, const Body& body) {
+  if (count <= 0) return;
+  Kokkos::parallel_for(
+      label, Kokkos::RangePolicy<ExecutionSpace, Kokkos::IndexType<Index>, Kokkos::Schedule<Kokkos::Static>>(0, count), body);
+}
+
+/// body(i, j, k) on every cell of the ranges.
+template <class Body>
+void for_each_cell(const std::string& label, const RowRanges& ranges, const Body& body) {
+  const Box box = ranges.box;
+  if (box.size() <= 0) return;
+  const Index ny = box.extent(1);
+  if constexpr (runs_on_host) {
+    for_each(label, ranges.number_of_rows(), [=](Index row) {
+      const int j = box.low[1] + static_cast<int>(row % ny);
+      const int k = box.low[2] + static_cast<int>(row / ny);
+      const int end = ranges.end(row);
+      PECLET_INDEPENDENT_ITERATIONS
+      for (int i = ranges.begin(row); i < end; ++i) body(i, j, k);
+    });
+  } else {
+    const Index nx = box.extent(0);
+    for_each(
+        label, box.size(), KOKKOS_LAMBDA(Index n) {
+          const Index row = n / nx;
+          const int i = box.low[0] + static_cast<int>(n % nx);
+          if (i >= ranges.begin(row) && i < ranges.end(row))
+            body(i, box.low[1] + static_cast<int>(row % ny), box.low[2] + static_cast<int>(row / ny));
+        });
+  }
+}
+
+template <class Body>
+void for_each_cell(const std::string& label, const Box& box, const Body& body) {
+  for_each_cell(label, RowRanges(box), body);
+}
+
+/// Sum of body(i, j, k) over the ranges.
+template <class Body>
+Real sum_cells(const std::string& label, const RowRanges& ranges, const Body& body) {
+  const Box box = ranges.box;
+  if (box.size() <= 0) return 0;
+  const Index ny = box.extent(1);
+  Real total = 0;
+  if constexpr (runs_on_host) {
+    Kokkos::parallel_reduce(
+        label,
+        Kokkos::RangePolicy<ExecutionSpace, Kokkos::IndexType<Index>, Kokkos::Schedule<Kokkos::Static>>(
+            0, ranges.number_of_rows()),
+        [=](Index row, Real& sum) {
+          const int j = box.low[1] + static_cast<int>(row % ny);
+          const int k = box.low[2] + static_cast<int>(row / ny);
+          const int end = ranges.end(row);
+          Real row_sum = 0;
+#pragma omp simd reduction(+ : row_sum)
+          for (int i = ranges.begin(row); i < end; ++i) row_sum += body(i, j, k);
+          sum += row_sum;
+        },
+        total);
+  } else {
+    const Index nx = box.extent(0);
+    Kokkos::parallel_reduce(
+        label, Kokkos::RangePolicy<ExecutionSpace, Kokkos::IndexType<Index>>(0, box.size()),
+        KOKKOS_LAMBDA(Index n, Real& sum) {
+          const Index row = n / nx;
+          const int i = box.low[0] + static_cast<int>(n % nx);
+          if (i >= ranges.begin(row) && i < ranges.end(row))
+            sum += body(i, box.low[1] + static_cast<int>(row % ny), box.low[2] + static_cast<int>(row / ny));
+        },
+        total);
+  }
+  return total;
+}
+
+/// Largest of body(i, j, k) over the ranges, at least zero.
+template <class Body>
+Real max_cells(const std::string& label, const RowRanges& ranges, const Body& body) {
+  const Box box = ranges.box;
+  if (box.size() <= 0) return 0;
+  const Index ny = box.extent(1);
+  Real largest = 0;
+  if constexpr (runs_on_host) {
+    Kokkos::parallel_reduce(
+        label,
+        Kokkos::RangePolicy<ExecutionSpace, Kokkos::IndexType<Index>, Kokkos::Schedule<Kokkos::Static>>(
+            0, ranges.number_of_rows()),
+        [=](Index row, Real& maximum) {
+          const int j = box.low[1] + static_cast<int>(row % ny);
+          const int k = box.low[2] + static_cast<int>(row / ny);
+          const int end = ranges.end(row);
+          Real row_maximum = 0;
+#pragma omp simd reduction(max : row_maximum)
+          for (int i = ranges.begin(row); i < end; ++i) {
+            const Real value = body(i, j, k);
+            row_maximum = value > row_maximum ? value : row_maximum;
+          }
+          maximum = row_maximum > maximum ? row_maximum : maximum;
+        },
+        Kokkos::Max<Real>(largest));
+  } else {
+    const Index nx = box.extent(0);
+    Kokkos::parallel_reduce(
+        label, Kokkos::RangePolicy<ExecutionSpace, Kokkos::IndexType<Index>>(0, box.size()),
+        KOKKOS_LAMBDA(Index n, Real& maximum) {
+          const Index row = n / nx;
+          const int i = box.low[0] + static_cast<int>(n % nx);
+          if (i < ranges.begin(row) || i >= ranges.end(row)) return;
+          const Real value = body(i, box.low[1] + static_cast<int>(row % ny), box.low[2] + static_cast<int>(row / ny));
+          maximum = value > maximum ? value : maximum;
+        },
+        Kokkos::Max<Real>(largest));
+  }
+  return largest < 0 ? 0 : largest;
+}
+
+/// Sum of body(n) over 0 <= n < count.
+template <class Body>
+Real sum_each(const std::string& label, Index count, const Body& body) {
+  Real total = 0;
+  if (count > 0)
+    Kokkos::parallel_reduce(
+        label,
+        Kokkos::RangePolicy<ExecutionSpace, Kokkos::IndexType<Index>, Kokkos::Schedule<Kokkos::Static>>(0, count),
+        KOKKOS_LAMBDA(Index n, Real& sum) { sum += body(n); }, total);
+  return total;
+}
+
+/// positions[n] = number of m < n with keep(m); returns the number kept in all. Order is kept.
+template <class Keep>
+Index enumerate(const std::string& label, Index count, const Array<Index>& positions, const Keep& keep) {
+  Index total = 0;
+  if (count > 0)
+    Kokkos::parallel_scan(
+        label, Kokkos::RangePolicy<ExecutionSpace, Kokkos::IndexType<Index>>(0, count),
+        KOKKOS_LAMBDA(Index n, Index& running, bool is_final) {
+          const bool kept = keep(n);
+          if (is_final) positions(n) = running;
+          if (kept) ++running;
+        },
+        total);
+  return total;
+}
+
+}  // namespace peclet

@@ -1,0 +1,25 @@
+#pragma once
+// The only place that names Kokkos execution and memory spaces.
+#include <Kokkos_Core.hpp>
+#include <cstddef>
+#include <cstdint>
+
+namespace peclet {
+
+using Real = double;
+using Index = std::ptrdiff_t;
+
+using ExecutionSpace = Kokkos::DefaultExecutionSpace;
+using MemorySpace = ExecutionSpace::memory_space;
+
+template <class T>
+using Array = Kokkos::View<T*, MemorySpace>;
+
+using Int3 = Kokkos::Array<int, 3>;
+using Real3 = Kokkos::Array<Real, 3>;
+
+/// True where kernels run on the host, so that rows can be walked by one thread.
+inline constexpr bool runs_on_host =
+    Kokkos::SpaceAccessibility<Kokkos::HostSpace, MemorySpace>::accessible;
+
+}  // namespace peclet
