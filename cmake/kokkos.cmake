@@ -1,0 +1,1 @@
+find_package(Kokkos 4.5...<6 REQUIRED)
