@@ -48,7 +48,12 @@ endfunction()
 
 # Build the sources once and install them under the cache folder; sets PECLET_KOKKOS_DIR.
 function(peclet_build_kokkos)
-  peclet_kokkos_source(source)
+  peclet_kokkos_source(source problems)
+  if(problems)
+    message(FATAL_ERROR "No Kokkos was found and none could be fetched:${problems}\n"
+                        "Install Kokkos 4.5 or newer as a shared library and set Kokkos_ROOT, or unpack its sources "
+                        "and set -DFETCHCONTENT_SOURCE_DIR_KOKKOS=<folder>.")
+  endif()
   peclet_kokkos_options("${source}" options)
   string(SHA256 key "${source};${options};${CMAKE_CXX_COMPILER};${CMAKE_CXX_COMPILER_VERSION}")
   string(SUBSTRING "${key}" 0 12 key)

@@ -61,7 +61,9 @@ function(peclet_fetch_kokkos route folder out)
   set(${out} "${problem}" PARENT_SCOPE)
 endfunction()
 
-function(peclet_kokkos_source out)
+# Sets out to the folder of the sources; problems stays empty, or lists why no route succeeded.
+function(peclet_kokkos_source out problems)
+  set(${problems} "" PARENT_SCOPE)
   if(FETCHCONTENT_SOURCE_DIR_KOKKOS)
     if(NOT EXISTS "${FETCHCONTENT_SOURCE_DIR_KOKKOS}/core/src/Kokkos_Core.hpp")
       message(FATAL_ERROR "FETCHCONTENT_SOURCE_DIR_KOKKOS: expected a folder of Kokkos sources, "
@@ -91,9 +93,7 @@ function(peclet_kokkos_source out)
     endif()
     string(STRIP "${problem}" problem)
     message(STATUS "Kokkos: ${origin_${route}} is not available: ${problem}")
-    string(APPEND problems "\n  ${origin_${route}}:\n    ${problem}")
+    string(APPEND found_problems "\n  ${origin_${route}}:\n    ${problem}")
   endforeach()
-  message(FATAL_ERROR "No Kokkos was found and none could be fetched:${problems}\n"
-                      "Install Kokkos 4.5 or newer as a shared library and set Kokkos_ROOT, or unpack its sources and "
-                      "set -DFETCHCONTENT_SOURCE_DIR_KOKKOS=<folder>.")
+  set(${problems} "${found_problems}" PARENT_SCOPE)
 endfunction()

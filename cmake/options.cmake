@@ -39,7 +39,7 @@ endif()
 add_library(peclet_options INTERFACE)
 # Contraction to fused multiply-add is allowed, reordering and assuming finite values are not.
 target_compile_options(
-  peclet_options INTERFACE ${PECLET_ARCHITECTURE_FLAGS} $<$<CONFIG:Release>:-O3> -ffp-contract=fast
+  peclet_options INTERFACE ${PECLET_ARCHITECTURE_FLAGS} -ffp-contract=fast
                            -fno-math-errno -fno-trapping-math)
 if(PECLET_WERROR)
   target_compile_options(peclet_options INTERFACE -Wall -Wextra -Wconversion -Werror)
