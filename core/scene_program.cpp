@@ -2,19 +2,9 @@
 
 #include <map>
 
+#include "core/field_transfer.hpp"
+
 namespace peclet {
-
-namespace {
-
-template <class T>
-Array<T> to_device(const std::string& label, const std::vector<T>& values) {
-  const Kokkos::View<const T*, Kokkos::HostSpace> source(values.data(), values.size());
-  Array<T> copy(label, values.size());
-  Kokkos::deep_copy(copy, source);
-  return copy;
-}
-
-}  // namespace
 
 PlacedLeaf::PlacedLeaf(const SceneNode& node, const Pose& pose)
     : opcode(static_cast<Opcode>(node.opcode)),
@@ -28,12 +18,12 @@ PlacedLeaf::PlacedLeaf(const SceneNode& node, const Pose& pose)
 SceneProgram::SceneProgram(const Scene& scene, const std::vector<int>& roots) {
   std::vector<PlacedLeaf> leaves;
   std::vector<int> steps;
-  std::vector<Slot> slots;
-  std::map<int, Slot> known;
+  std::vector<ProgramSlot> slots;
+  std::map<int, ProgramSlot> known;
   for (int root : roots) {
     scene.require_node(root, "root");
     const auto [entry, is_new] = known.try_emplace(root);
-    Slot& slot = entry->second;
+    ProgramSlot& slot = entry->second;
     if (is_new) {
       const FlatRoot flat = flatten(scene.nodes(), root);
       const auto first_leaf = static_cast<int>(leaves.size());
@@ -51,9 +41,9 @@ SceneProgram::SceneProgram(const Scene& scene, const std::vector<int>& roots) {
     }
     slots.push_back(slot);
   }
-  leaves_ = to_device("peclet::SceneProgram::leaves", leaves);
-  steps_ = to_device("peclet::SceneProgram::steps", steps);
-  slots_ = to_device("peclet::SceneProgram::slots", slots);
+  leaves_ = copy_from_host("peclet::SceneProgram::leaves", leaves);
+  steps_ = copy_from_host("peclet::SceneProgram::steps", steps);
+  slots_ = copy_from_host("peclet::SceneProgram::slots", slots);
 }
 
 }  // namespace peclet

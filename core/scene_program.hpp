@@ -40,6 +40,13 @@ struct PlacedLeaf {
   }
 };
 
+/// One root of a program.
+struct ProgramSlot {
+  int first = 0, last = 0;          // steps
+  int single_leaf = -1;             // the leaf, if there is only one
+  Real centered_sphere_radius = 0;  // positive if the root is a sphere around the origin
+};
+
 /// Copied by value into kernels. Slot s evaluates roots[s]; equal roots share their program.
 class SceneProgram {
  public:
@@ -52,7 +59,7 @@ class SceneProgram {
   /// Signed distance of the placed body; far_away where it has vanished.
   KOKKOS_FUNCTION Real distance(int slot, const Pose& pose, Vec3 world) const {
     if (pose.scale == 0) return far_away;
-    const Slot& program = slots_(slot);
+    const ProgramSlot& program = slots_(slot);
     if (program.centered_sphere_radius > 0)
       return norm(world - pose.translation) - pose.scale * program.centered_sphere_radius;
     return pose.scale * evaluate<Real>(program, to_local(pose, world));
@@ -77,14 +84,8 @@ class SceneProgram {
   int number_of_slots() const { return static_cast<int>(slots_.extent(0)); }
 
  private:
-  struct Slot {
-    int first = 0, last = 0;          // steps
-    int single_leaf = -1;             // the leaf, if there is only one
-    Real centered_sphere_radius = 0;  // positive if the root is a sphere around the origin
-  };
-
   template <class T>
-  KOKKOS_INLINE_FUNCTION T evaluate(const Slot& program, Vec3 x) const {
+  KOKKOS_INLINE_FUNCTION T evaluate(const ProgramSlot& program, Vec3 x) const {
     if (program.single_leaf >= 0) return leaves_(program.single_leaf).evaluate(x, T{});
     T stack[FlatRoot::stack_size];
     int top = -1;
@@ -106,7 +107,13 @@ class SceneProgram {
 
   Array<PlacedLeaf> leaves_;
   Array<int> steps_;
-  Array<Slot> slots_;
+  Array<ProgramSlot> slots_;
+};
+
+/// A body for kernels.
+struct PlacedSlot {
+  int slot = 0;
+  Pose pose;
 };
 
 }  // namespace peclet

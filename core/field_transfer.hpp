@@ -1,0 +1,67 @@
+#pragma once
+// Copies between host memory and arrays or fields where kernels run.
+#include <string>
+#include <vector>
+
+#include "core/field.hpp"
+#include "core/loop.hpp"
+
+namespace peclet {
+
+/// Copy of size values for kernels.
+template <class T>
+Array<T> copy_from_host(const std::string& label, const T* values, Index size) {
+  const Kokkos::View<const T*, Kokkos::HostSpace> source(values, size);
+  Array<T> copy(Kokkos::view_alloc(label, Kokkos::WithoutInitializing), size);
+  Kokkos::deep_copy(copy, source);
+  return copy;
+}
+
+template <class T>
+Array<T> copy_from_host(const std::string& label, const std::vector<T>& values) {
+  return copy_from_host(label, values.data(), static_cast<Index>(values.size()));
+}
+
+template <class T>
+void copy_to_host(const Array<T>& array, T* values) {
+  Kokkos::deep_copy(Kokkos::View<T*, Kokkos::HostSpace>(values, array.extent(0)), array);
+}
+
+template <class T>
+std::vector<T> copy_to_host(const Array<T>& array) {
+  std::vector<T> values(array.extent(0));
+  copy_to_host(array, values.data());
+  return values;
+}
+
+/// values[i + nx (j + ny k)] = field(i, j, k)
+template <class T>
+void copy_to_host(const Field<T>& field, T* values) {
+  const Int3 n = field.layout().cells;
+  const Index size = static_cast<Index>(n[0]) * n[1] * n[2];
+  const Array<T> dense = runs_on_host
+                             ? Array<T>(values, size)
+                             : Array<T>(Kokkos::view_alloc("core::dense", Kokkos::WithoutInitializing), size);
+  for_each_cell(
+      "core::copy_to_host", RowRanges(n), KOKKOS_LAMBDA(int i, int j, int k) {
+        dense(i + n[0] * (j + static_cast<Index>(n[1]) * k)) = field(i, j, k);
+      });
+  if (runs_on_host)
+    Kokkos::fence("core::copy_to_host");
+  else
+    copy_to_host(dense, values);
+}
+
+/// field(i, j, k) = values[i + nx (j + ny k)]; ghosts stay as they are.
+template <class T>
+void copy_from_host(const T* values, const Field<T>& field) {
+  const Int3 n = field.layout().cells;
+  const Array<T> dense = copy_from_host("core::dense", values, static_cast<Index>(n[0]) * n[1] * n[2]);
+  for_each_cell(
+      "core::copy_from_host", RowRanges(n), KOKKOS_LAMBDA(int i, int j, int k) {
+        field(i, j, k) = dense(i + n[0] * (j + static_cast<Index>(n[1]) * k));
+      });
+  Kokkos::fence("core::copy_from_host");
+}
+
+}  // namespace peclet

@@ -1,0 +1,256 @@
+#pragma once
+// The only place where NumPy arrays and C++ meet. Inputs may have any real dtype, memory order and strides:
+// they are converted, keeping values and index meaning. Outputs own their memory.
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "core/error.hpp"
+#include "core/field.hpp"
+#include "core/field_transfer.hpp"
+#include "core/vec3.hpp"
+
+namespace peclet::python {
+
+namespace nb = nanobind;
+
+enum class Order : char { C = 'C', Fortran = 'F' };
+
+/// Allowed extents per axis; any_size accepts every number.
+using Shape = std::vector<std::int64_t>;
+inline constexpr std::int64_t any_size = -1;
+
+namespace detail {
+
+template <class T>
+constexpr const char* dtype_name() {
+  if constexpr (std::is_same_v<T, double>)
+    return "float64";
+  else if constexpr (std::is_same_v<T, float>)
+    return "float32";
+  else if constexpr (std::is_same_v<T, std::int32_t>)
+    return "int32";
+  else if constexpr (std::is_same_v<T, std::int64_t>)
+    return "int64";
+  else
+    static_assert(std::is_same_v<T, std::uint8_t>, "element type without a NumPy name");
+  return "uint8";
+}
+
+inline std::string shape_text(const Shape& shape) {
+  std::string text = "(";
+  for (std::size_t n = 0; n < shape.size(); ++n)
+    text += (n ? ", " : "") + (shape[n] == any_size ? std::string("*") : std::to_string(shape[n]));
+  return text + (shape.size() == 1 ? ",)" : ")");
+}
+
+inline Shape shape_of(nb::handle array) {
+  Shape shape;
+  for (nb::handle extent : array.attr("shape")) shape.push_back(nb::cast<std::int64_t>(extent));
+  return shape;
+}
+
+inline bool matches(const Shape& found, const Shape& expected) {
+  if (found.size() != expected.size()) return false;
+  for (std::size_t n = 0; n < found.size(); ++n)
+    if (expected[n] != any_size && expected[n] != found[n]) return false;
+  return true;
+}
+
+/// numpy.asarray(value), or a TypeError that names the argument unless it holds real numbers.
+inline nb::object real_array(nb::handle value, const std::string& name) {
+  const nb::module_ numpy = nb::module_::import_("numpy");
+  nb::object array;
+  try {
+    array = numpy.attr("asarray")(value);
+  } catch (nb::python_error& error) {
+    const std::string message = name + ": expected an array of numbers, found " +
+                                nb::cast<std::string>(nb::str(value.type().attr("__name__"))) + " (" +
+                                nb::cast<std::string>(nb::str(error.value())) + ")";
+    throw nb::type_error(message.c_str());
+  }
+  const auto kind = nb::cast<std::string>(array.attr("dtype").attr("kind"));
+  const bool is_empty = nb::cast<std::int64_t>(array.attr("size")) == 0;
+  if (kind.find_first_of("biuf") == std::string::npos && !is_empty) {
+    const std::string found = value.is_none() ? "None" : nb::cast<std::string>(nb::str(array.attr("dtype")));
+    throw nb::type_error((name + ": expected real numbers, found " + found).c_str());
+  }
+  return array;
+}
+
+/// "name[1, 2]" for the entry at this place in memory.
+inline std::string entry_text(const std::string& name, std::size_t place, const Shape& shape, Order order) {
+  std::vector<std::string> indices(shape.size());
+  for (std::size_t n = 0; n < shape.size(); ++n) {
+    const std::size_t axis = order == Order::C ? shape.size() - 1 - n : n;
+    const auto extent = static_cast<std::size_t>(shape[axis]);
+    indices[axis] = std::to_string(place % extent);
+    place /= extent;
+  }
+  std::string text = name + "[";
+  for (std::size_t n = 0; n < indices.size(); ++n) text += (n ? ", " : "") + indices[n];
+  return text + "]";
+}
+
+/// Contiguous array of T; integers must survive the conversion.
+template <class T>
+nb::object converted(const nb::object& real, const std::string& name, Order order) {
+  const nb::module_ numpy = nb::module_::import_("numpy");
+  if constexpr (std::is_integral_v<T>) {
+    const nb::object limits = numpy.attr("iinfo")(dtype_name<T>());
+    const nb::object fits = numpy.attr("logical_and")(numpy.attr("greater_equal")(real, limits.attr("min")),
+                                                      numpy.attr("less_equal")(real, limits.attr("max")));
+    const nb::object whole = numpy.attr("equal")(numpy.attr("floor")(real), real);
+    require(nb::cast<bool>(numpy.attr("all")(numpy.attr("logical_and")(fits, whole))), name,
+            std::string("integers that fit ") + dtype_name<T>(),
+            nb::cast<std::string>(nb::str(real.attr("dtype"))) + " values that do not");
+  }
+  const char* layout = order == Order::C ? "C" : "F";
+  return numpy.attr("require")(real, dtype_name<T>(), nb::make_tuple(layout, "A"));
+}
+
+}  // namespace detail
+
+/// A contiguous array that a caller passed, or a converted copy of it; valid while this object lives.
+template <class T>
+class Input {
+ public:
+  Input(nb::handle value, const std::string& name, const Shape& expected, Order order = Order::C)
+      : Input(value, name, order) {
+    require(detail::matches(shape_, expected), name, "an array of shape " + detail::shape_text(expected),
+            detail::shape_text(shape_));
+  }
+  /// Any shape, in C order.
+  Input(nb::handle value, const std::string& name) : Input(value, name, Order::C) {}
+
+  /// Throws at the first entry that is infinite or not a number.
+  void require_finite() const {
+    for (std::size_t n = 0; n < values_.size(); ++n)
+      if (!std::isfinite(values_[n]))
+        peclet::require_finite(values_[n], detail::entry_text(name_, n, shape_, order_));
+  }
+
+  const T* data() const { return values_.data(); }
+  std::size_t size() const { return values_.size(); }
+  std::int64_t extent(std::size_t axis) const { return shape_[axis]; }
+  const Shape& shape() const { return shape_; }
+  std::span<const T> values() const { return values_; }
+  T operator[](std::size_t n) const { return values_[n]; }
+
+ private:
+  Input(nb::handle value, const std::string& name, Order order) : name_(name), order_(order) {
+    const nb::object real = detail::real_array(value, name);
+    shape_ = detail::shape_of(real);
+    array_ = nb::cast<Array>(detail::converted<T>(real, name, order));
+    values_ = {array_.data(), array_.size()};
+  }
+
+  using Array = nb::ndarray<const T, nb::device::cpu>;
+  std::string name_;
+  Order order_;
+  Shape shape_;
+  Array array_;
+  std::span<const T> values_;
+};
+
+/// Memory that becomes a NumPy array of its own; not initialised.
+template <class T>
+class Output {
+ public:
+  explicit Output(Shape shape, Order order = Order::C) : shape_(std::move(shape)), order_(order) {
+    for (const std::int64_t extent : shape_) size_ *= static_cast<std::size_t>(extent);
+    values_ = std::make_unique_for_overwrite<T[]>(size_);
+  }
+
+  T* data() { return values_.get(); }
+  std::size_t size() const { return size_; }
+  T& operator[](std::size_t n) { return values_[n]; }
+
+  nb::object release() {
+    const std::size_t axes = shape_.size();
+    std::vector<std::size_t> shape(axes);
+    std::vector<std::int64_t> strides(axes);
+    std::int64_t stride = 1;
+    for (std::size_t n = 0; n < axes; ++n) {
+      const std::size_t axis = order_ == Order::C ? axes - 1 - n : n;
+      shape[axis] = static_cast<std::size_t>(shape_[axis]);
+      strides[axis] = stride;
+      stride *= shape_[axis];
+    }
+    T* values = values_.release();
+    const nb::capsule owner(values, [](void* memory) noexcept { delete[] static_cast<T*>(memory); });
+    return nb::cast(nb::ndarray<nb::numpy, T>(values, axes, shape.data(), owner, strides.data()),
+                    nb::rv_policy::reference);
+  }
+
+ private:
+  Shape shape_;
+  Order order_;
+  std::size_t size_ = 1;
+  std::unique_ptr<T[]> values_;
+};
+
+/// Array of this shape, or flat if none is given.
+template <class T>
+nb::object to_numpy(std::span<const T> values, Shape shape = {}, Order order = Order::C) {
+  if (shape.empty()) shape = {static_cast<std::int64_t>(values.size())};
+  Output<T> output(std::move(shape), order);
+  std::copy(values.begin(), values.end(), output.data());
+  return output.release();
+}
+
+template <class T>
+nb::object to_numpy(const std::vector<T>& values, Shape shape = {}, Order order = Order::C) {
+  return to_numpy(std::span<const T>(values), std::move(shape), order);
+}
+
+inline nb::object to_numpy(Vec3 v) { return to_numpy(std::vector<double>{v.x, v.y, v.z}); }
+
+/// Cells of a field without its ghosts: shape (nx, ny, nz), Fortran order.
+template <class T>
+nb::object to_numpy(const Field<T>& field) {
+  const Int3 n = field.layout().cells;
+  Output<T> output({n[0], n[1], n[2]}, Order::Fortran);
+  copy_to_host(field, output.data());
+  return output.release();
+}
+
+/// Fill the cells of a field from an array of shape (nx, ny, nz) with finite entries.
+template <class T>
+void assign(const Field<T>& field, nb::handle value, const std::string& name) {
+  const Int3 n = field.layout().cells;
+  const Input<T> input(value, name, {n[0], n[1], n[2]}, Order::Fortran);
+  input.require_finite();
+  copy_from_host(input.data(), field);
+}
+
+/// Any sequence of count finite numbers.
+template <std::size_t count>
+std::array<double, count> to_numbers(nb::handle value, const std::string& name) {
+  const Input<double> input(value, name, {static_cast<std::int64_t>(count)});
+  input.require_finite();
+  std::array<double, count> numbers;
+  std::copy(input.values().begin(), input.values().end(), numbers.begin());
+  return numbers;
+}
+
+inline Vec3 to_vec3(nb::handle value, const std::string& name) {
+  const auto [x, y, z] = to_numbers<3>(value, name);
+  return {x, y, z};
+}
+
+inline Quaternion to_quaternion(nb::handle value, const std::string& name) {
+  const auto [x, y, z, w] = to_numbers<4>(value, name);
+  return {x, y, z, w};
+}
+
+}  // namespace peclet::python
