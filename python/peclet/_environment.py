@@ -25,8 +25,9 @@ def _check_processor() -> None:
     missing = _missing_instruction_sets()
     if missing:
         raise ImportError(
-            f"peclet-resolved was built for processors with {', '.join(sorted(missing))}, which this one lacks. "
-            "Build it here (pip install .), or with -C cmake.define.PECLET_NATIVE=OFF for any processor since 2015."
+            f"peclet-resolved was built for processors with {', '.join(sorted(missing))}, "
+            "which this one lacks. Build it on this machine, or with "
+            "-C cmake.define.PECLET_NATIVE=OFF for any processor since 2015."
         )
 
 
@@ -40,8 +41,8 @@ def _warn_about_the_other_family() -> None:
     found = [name for name in _REFERENCE if _is_installed(name)]
     if found:
         warnings.warn(
-            f"peclet-resolved and {', '.join(found)} provide the same import names and overwrite each other's files. "
-            "Keep them in separate virtual environments.",
+            f"peclet-resolved and {', '.join(found)} provide the same import names and overwrite "
+            "each other's files; keep them in separate virtual environments.",
             stacklevel=2,
         )
 
