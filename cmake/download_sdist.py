@@ -20,7 +20,9 @@ def python_with_unearth(folder: pathlib.Path) -> str:
         return sys.executable
     venv.create(folder, with_pip=True)
     python = folder / ("Scripts" if os.name == "nt" else "bin") / "python"
-    subprocess.run([python, "-m", "pip", "install", "--quiet", "unearth"], check=True, env=clean_environment())
+    subprocess.run(
+        [python, "-m", "pip", "install", "--quiet", "unearth"], check=True, env=clean_environment()
+    )
     return str(python)
 
 
