@@ -1,0 +1,241 @@
+#include "dem/contact_detection.hpp"
+
+#include <limits>
+#include <utility>
+
+#include "core/error.hpp"
+#include "dem/wall_features.hpp"
+
+namespace peclet::dem {
+namespace {
+
+constexpr Real largest_sweep = 4;  // in radii
+
+KOKKOS_INLINE_FUNCTION Real radius_of(const ContactScene& scene, Index n) {
+  return scene.shape_radius * scene.particles.scale(n);
+}
+
+/// Distance from the centre at which a contact begins.
+void compute_reaches(const ContactScene& scene, const Bodies& bodies) {
+  for_each(
+      "dem::compute_reaches", scene.particles.count, KOKKOS_LAMBDA(Index n) {
+        const Real radius = radius_of(scene, n);
+        const Real sweep =
+            norm(bodies(n).velocity) * scene.dt + norm(bodies(n).acceleration) * scene.dt * scene.dt;
+        scene.reaches(n) = (1 + 0.5 * contact_margin) * radius + Kokkos::min(sweep, largest_sweep * radius);
+      });
+}
+
+/// The particle of larger reach looks for the others (of equals, the later one): it never has to look further
+/// than twice its own reach, so that small particles do not search for large ones.
+struct PairVisitor {
+  const ParticleArrays& particles;
+  int a;
+  Vec3 position;
+  Real reach;
+  bool a_is_fixed;
+  ContactKey* row;  // nullptr: only count
+  int count = 0;
+
+  KOKKOS_FUNCTION void operator()(const CellList::Entry& entry, Vec3 shift, int image) {
+    const int b = entry.particle;
+    if (entry.reach > reach || (entry.reach == reach && b >= a) || b == a) return;
+    const Vec3 d = position - entry.position - shift;
+    const Real limit = reach + entry.reach;
+    if (!(dot(d, d) < limit * limit)) return;
+    if (a_is_fixed && particles.inverse_mass(b) == 0) return;
+    if (row) row[count] = {a, b, image};
+    ++count;
+  }
+};
+
+KOKKOS_INLINE_FUNCTION int wall_features(const ContactScene& scene, Index a, const Wall& wall,
+                                         WallFeature* features) {
+  const Real radius = radius_of(scene, a);
+  const Vec3 x = scene.particles.position(a);
+  const Real wall_speed = norm(velocity_at(wall.twist, wall.center, x));
+  const Real margin = 0.5 * contact_margin * radius;
+  return scene.walls.features_near(
+      wall, x, radius, scene.reaches(a) + margin + Kokkos::min(wall_speed * scene.dt, largest_sweep * radius),
+      features);
+}
+
+/// Number of contacts of particle a; written to row unless that is nullptr.
+KOKKOS_FUNCTION int collect_row(const ContactScene& scene, const CellList& cells, Index a, ContactKey* row) {
+  const Real reach = scene.reaches(a);
+  const bool is_fixed = scene.particles.inverse_mass(a) == 0;
+  PairVisitor pairs{scene.particles, static_cast<int>(a), scene.particles.position(a), reach, is_fixed, row};
+  cells.visit_near(scene.particles.position(a), 2 * reach, pairs);
+  int count = pairs.count;
+  for (int w = 0; w < scene.walls.count && !is_fixed; ++w) {
+    WallFeature features[WallArrays::maximum_features];
+    const int found = wall_features(scene, a, scene.walls.walls(w), features);
+    for (int k = 0; k < found; ++k, ++count)
+      if (row) row[count] = {static_cast<int>(a), -1 - w, k};
+  }
+  return count;
+}
+
+KOKKOS_INLINE_FUNCTION bool comes_before(const ContactKey& p, const ContactKey& q) {
+  return p.b != q.b ? p.b < q.b : p.image < q.image;
+}
+
+KOKKOS_INLINE_FUNCTION void sort_row(ContactKey* row, Index count) {
+  for (Index n = 1; n < count; ++n) {
+    const ContactKey key = row[n];
+    Index m = n;
+    for (; m > 0 && comes_before(key, row[m - 1]); --m) row[m] = row[m - 1];
+    row[m] = key;
+  }
+}
+
+void count_contacts(const ContactScene& scene, const CellList& cells, const Array<Index>& sizes) {
+  for_each(
+      "dem::count_contacts", scene.particles.count,
+      KOKKOS_LAMBDA(Index a) { sizes(a) = collect_row(scene, cells, a, nullptr); });
+}
+
+Index sum_row_sizes(Index rows, const Array<Index>& sizes, const Array<Index>& begin) {
+  return exclusive_sum("dem::sum_row_sizes", rows, begin, KOKKOS_LAMBDA(Index n) { return sizes(n); });
+}
+
+void fill_rows(const ContactScene& scene, const CellList& cells, const ContactKeys& keys) {
+  for_each(
+      "dem::fill_rows", scene.particles.count, KOKKOS_LAMBDA(Index a) {
+        const Index begin = keys.row_begin(a), size = keys.row_begin(a + 1) - begin;
+        if (size == 0) return;
+        collect_row(scene, cells, a, &keys.keys(begin));
+        sort_row(&keys.keys(begin), size);
+      });
+}
+
+/// The same pair seen from the other particle.
+KOKKOS_INLINE_FUNCTION int opposite_image(int image) {
+  const int turns_x = image / 65536 - 128, turns_y = image / 256 % 256 - 128, turns_z = image % 256 - 128;
+  return ((128 - turns_x) * 256 + 128 - turns_y) * 256 + 128 - turns_z;
+}
+
+KOKKOS_INLINE_FUNCTION Index find_key(const ContactKeys& keys, Index a, int b, int image) {
+  if (a < keys.rows)
+    for (Index n = keys.row_begin(a); n < keys.row_begin(a + 1); ++n)
+      if (keys.keys(n).b == b && keys.keys(n).image == image) return n;
+  return -1;
+}
+
+/// Which of a pair comes first may have changed since.
+KOKKOS_INLINE_FUNCTION void recall(const ContactHistory& history, const ContactKey& key, Contact& c) {
+  Index n = find_key(history.keys, key.a, key.b, key.image);
+  Real sign = 1;
+  if (n < 0 && key.b >= 0) {
+    n = find_key(history.keys, key.b, key.a, opposite_image(key.image));
+    sign = -1;
+  }
+  constexpr Real same_direction = 0.9;
+  if (n < 0 || sign * dot(history.normal(n), c.normal) < same_direction) return;
+  c.carried_force = history.force(n);
+  c.carried_friction = sign * history.friction(n);
+}
+
+KOKKOS_INLINE_FUNCTION Vec3 shift_of(const Domain& domain, int image) {
+  return {(image / 65536 - 128) * domain.extent.x, (image / 256 % 256 - 128) * domain.extent.y,
+          (image % 256 - 128) * domain.extent.z};
+}
+
+KOKKOS_INLINE_FUNCTION void set_pair(const ContactScene& scene, const ContactKey& key, Contact& c) {
+  const Real radius_a = radius_of(scene, key.a), radius_b = radius_of(scene, key.b);
+  c.offset = shift_of(scene.domain, key.image);
+  c.reach = radius_a + radius_b;
+  c.share = radius_a / c.reach;
+  const Vec3 d = scene.particles.position(key.a) - scene.particles.position(key.b) - c.offset;
+  c.normal = normalized(d);
+  c.gap = norm(d) - c.reach;
+  c.material = scene.materials(scene.particles.material(key.a), scene.particles.material(key.b));
+}
+
+KOKKOS_INLINE_FUNCTION void set_wall(const ContactScene& scene, const ContactKey& key, Contact& c) {
+  const Wall& wall = scene.walls.walls(-1 - key.b);
+  WallFeature features[WallArrays::maximum_features];
+  wall_features(scene, key.a, wall, features);
+  const WallFeature& feature = features[key.image];
+  c.offset = feature.point + scene.dt * feature.velocity;
+  c.normal = feature.normal;
+  c.wall_velocity = feature.velocity;
+  c.reach = radius_of(scene, key.a);
+  c.share = 1;
+  c.gap = dot(c.normal, scene.particles.position(key.a) - feature.point) - c.reach;
+  c.material = wall.material_id == Wall::of_own_material
+                   ? wall.own_material
+                   : scene.materials(scene.particles.material(key.a), wall.material_id);
+}
+
+void write_contacts(const ContactScene& scene, const ContactKeys& keys, const Array<Index>& place,
+                    const ContactHistory& history, const Array<Contact>& contacts) {
+  for_each(
+      "dem::write_contacts", keys.count, KOKKOS_LAMBDA(Index n) {
+        const ContactKey key = keys.keys(n);
+        Contact c;
+        c.a = key.a;
+        c.b = key.b;
+        c.row_entry = static_cast<int>(n);
+        if (key.b >= 0)
+          set_pair(scene, key, c);
+        else
+          set_wall(scene, key, c);
+        recall(history, key, c);
+        contacts(place(n)) = c;
+      });
+}
+
+void write_history(Index count, const Array<Contact>& contacts, const ContactHistory& history) {
+  for_each(
+      "dem::write_history", count, KOKKOS_LAMBDA(Index n) {
+        const Contact& c = contacts(n);
+        const Real rate = c.closed_time > 0 ? 1 / c.closed_time : 0;
+        history.force(c.row_entry) = rate * c.normal_impulse;
+        history.friction(c.row_entry) = rate * c.tangential_impulse;
+        history.normal(c.row_entry) = c.normal;
+      });
+}
+
+/// Room for count entries, contents lost; some in reserve, so that a slowly growing number rarely allocates.
+template <class T>
+void make_room(Array<T>& array, const std::string& name, Index count) {
+  if (static_cast<Index>(array.extent(0)) < count)
+    array = Array<T>(name, static_cast<std::size_t>(count + count / 4));
+}
+
+}  // namespace
+
+void ContactFinder::find(ContactScene& scene, const Bodies& bodies, ContactKeys& keys) {
+  const Index count = scene.particles.count;
+  make_room(reaches_, "dem.reaches", count);
+  scene.reaches = reaches_;
+  compute_reaches(scene, bodies);
+  const CellList& cells = search_.sort(count, scene.particles.position, reaches_, scene.domain);
+
+  keys.rows = count;
+  make_room(row_sizes_, "dem.row_sizes", count);
+  make_room(keys.row_begin, "dem.row_begin", count + 1);
+  count_contacts(scene, cells, row_sizes_);
+  keys.count = sum_row_sizes(count, row_sizes_, keys.row_begin);
+  require_state(keys.count <= std::numeric_limits<int>::max(),
+                "contacts: expected at most 2147483647, found more");
+  make_room(keys.keys, "dem.keys", keys.count);
+  fill_rows(scene, cells, keys);
+}
+
+void build_contacts(const ContactScene& scene, const ContactKeys& keys, const Array<Index>& place,
+                    const ContactHistory& history, Array<Contact>& contacts) {
+  make_room(contacts, "dem.contacts", keys.count);
+  write_contacts(scene, keys, place, history, contacts);
+}
+
+void record_history(ContactKeys& keys, const Array<Contact>& contacts, ContactHistory& history) {
+  make_room(history.force, "dem.history_force", keys.count);
+  make_room(history.friction, "dem.history_friction", keys.count);
+  make_room(history.normal, "dem.history_normal", keys.count);
+  write_history(keys.count, contacts, history);
+  std::swap(keys, history.keys);
+}
+
+}  // namespace peclet::dem
