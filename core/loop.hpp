@@ -163,6 +163,92 @@ Real max_cells(const std::string& label, const RowRanges& ranges, const Body& bo
   return largest < 0 ? 0 : largest;
 }
 
+struct MaxAndSum {
+  Real max = 0, sum = 0;
+};
+
+/// Largest magnitude and sum of body(i, j, k) over the ranges. The sum is not finite if any value is not.
+template <class Body>
+MaxAndSum max_and_sum_cells(const std::string& label, const RowRanges& ranges, const Body& body) {
+  const Box box = ranges.box;
+  MaxAndSum result;
+  if (box.size() <= 0) return result;
+  const Index ny = box.extent(1);
+  if constexpr (runs_on_host) {
+    Kokkos::parallel_reduce(
+        label,
+        Kokkos::RangePolicy<ExecutionSpace, Kokkos::IndexType<Index>, Kokkos::Schedule<Kokkos::Static>>(
+            0, ranges.number_of_rows()),
+        [=](Index row, Real& maximum, Real& sum) {
+          const int j = box.low[1] + static_cast<int>(row % ny);
+          const int k = box.low[2] + static_cast<int>(row / ny);
+          const int end = ranges.end(row);
+          Real row_maximum = 0, row_sum = 0;
+#pragma omp simd reduction(max : row_maximum) reduction(+ : row_sum)
+          for (int i = ranges.begin(row); i < end; ++i) {
+            const Real value = body(i, j, k);
+            const Real magnitude = value < 0 ? -value : value;
+            row_maximum = magnitude > row_maximum ? magnitude : row_maximum;
+            row_sum += value;
+          }
+          maximum = row_maximum > maximum ? row_maximum : maximum;
+          sum += row_sum;
+        },
+        Kokkos::Max<Real>(result.max), Kokkos::Sum<Real>(result.sum));
+  } else {
+    const Index nx = box.extent(0);
+    Kokkos::parallel_reduce(
+        label, Kokkos::RangePolicy<ExecutionSpace, Kokkos::IndexType<Index>>(0, box.size()),
+        KOKKOS_LAMBDA(Index n, Real& maximum, Real& sum) {
+          const Index row = n / nx;
+          const int i = box.low[0] + static_cast<int>(n % nx);
+          if (i < ranges.begin(row) || i >= ranges.end(row)) return;
+          const Real value = body(i, box.low[1] + static_cast<int>(row % ny), box.low[2] + static_cast<int>(row / ny));
+          const Real magnitude = value < 0 ? -value : value;
+          maximum = magnitude > maximum ? magnitude : maximum;
+          sum += value;
+        },
+        Kokkos::Max<Real>(result.max), Kokkos::Sum<Real>(result.sum));
+  }
+  if (!(result.max >= 0)) result.max = 0;
+  return result;
+}
+
+/// body(i, j) for 0 <= i < columns, 0 <= j < rows of a small table: not worth several threads on the host.
+template <class Body>
+void for_each_entry(const std::string& label, int columns, int rows, const Body& body) {
+  if constexpr (runs_on_host) {
+    const Body entry = body;
+    for (int j = 0; j < rows; ++j) {
+      PECLET_INDEPENDENT_ITERATIONS
+      for (int i = 0; i < columns; ++i) entry(i, j);
+    }
+  } else {
+    for_each(
+        label, static_cast<Index>(columns) * rows, KOKKOS_LAMBDA(Index n) {
+          body(static_cast<int>(n % columns), static_cast<int>(n / columns));
+        });
+  }
+}
+
+/// body(i, j, k, sum, squares, largest) adds to two sums and raises a maximum, in one pass.
+template <class Body>
+void reduce_cells(const std::string& label, const RowRanges& ranges, const Body& body, Real& sum, Real& squares,
+                  Real& largest) {
+  const Box box = ranges.box;
+  const Index nx = box.extent(0), ny = box.extent(1);
+  if (box.size() <= 0) return;
+  Kokkos::parallel_reduce(
+      label, Kokkos::RangePolicy<ExecutionSpace, Kokkos::IndexType<Index>>(0, box.size()),
+      KOKKOS_LAMBDA(Index n, Real& s, Real& q, Real& m) {
+        const Index row = n / nx;
+        const int i = box.low[0] + static_cast<int>(n % nx);
+        if (i >= ranges.begin(row) && i < ranges.end(row))
+          body(i, box.low[1] + static_cast<int>(row % ny), box.low[2] + static_cast<int>(row / ny), s, q, m);
+      },
+      sum, squares, Kokkos::Max<Real>(largest));
+}
+
 /// Sum of body(n) over 0 <= n < count.
 template <class Body>
 Real sum_each(const std::string& label, Index count, const Body& body) {
@@ -189,6 +275,59 @@ Index enumerate(const std::string& label, Index count, const Array<Index>& posit
         },
         total);
   return total;
+}
+
+/// Largest of body(n) over 0 <= n < count, at least zero; the same for any number of threads.
+template <class Body>
+Real max_each(const std::string& label, Index count, const Body& body) {
+  Real largest = 0;
+  if (count > 0)
+    Kokkos::parallel_reduce(
+        label, Kokkos::RangePolicy<ExecutionSpace, Kokkos::IndexType<Index>>(0, count),
+        KOKKOS_LAMBDA(Index n, Real& maximum) {
+          const Real value = body(n);
+          if (value > maximum) maximum = value;
+        },
+        Kokkos::Max<Real>(largest));
+  return largest > 0 ? largest : 0;
+}
+
+/// offsets[n] = sum of amount(m) over m < n, for 0 <= n <= count; returns the whole sum.
+template <class Amount>
+Index exclusive_sum(const std::string& label, Index count, const Array<Index>& offsets, const Amount& amount) {
+  Index total = 0;
+  Kokkos::parallel_scan(
+      label, Kokkos::RangePolicy<ExecutionSpace, Kokkos::IndexType<Index>>(0, count + 1),
+      KOKKOS_LAMBDA(Index n, Index& running, bool is_final) {
+        if (is_final) offsets(n) = running;
+        if (n < count) running += amount(n);
+      },
+      total);
+  return total;
+}
+
+/// body(n) for first <= n < last.
+template <class Body>
+void for_each_from(const std::string& label, Index first, Index last, const Body& body) {
+  if (first >= last) return;
+  Kokkos::parallel_for(
+      label, Kokkos::RangePolicy<ExecutionSpace, Kokkos::IndexType<Index>, Kokkos::Schedule<Kokkos::Static>>(first, last),
+      body);
+}
+
+template <class Body>
+struct InOrder {
+  Body body;
+  Index first, last;
+  KOKKOS_FUNCTION void operator()(Index) const {
+    for (Index n = first; n < last; ++n) body(n);
+  }
+};
+
+/// body(n) for first <= n < last, one after the other.
+template <class Body>
+void for_each_in_order(const std::string& label, Index first, Index last, const Body& body) {
+  if (first < last) for_each(label, 1, InOrder<Body>{body, first, last});
 }
 
 }  // namespace peclet
