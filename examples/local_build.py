@@ -1,6 +1,6 @@
 """Run pages, scripts and tests on build folders instead of the installed package.
 
-    PECLET_LOCAL_BUILD=core/build:flow/build:dem/build python examples/drafting-kissing-tumbling/run.py
+PECLET_LOCAL_BUILD=core/build:flow/build:dem/build python examples/drafting-kissing-tumbling/run.py
 """
 
 import os
