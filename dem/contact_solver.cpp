@@ -8,12 +8,6 @@ namespace {
 constexpr Real velocity_tolerance = 1e-6;  // change in a sweep, over the largest speed
 constexpr Real position_tolerance = 1e-6;  // overlap over radius
 
-struct Sweep {
-  Array<Contact> contacts;
-  Bodies bodies;
-  Array<Real> residuals;  // of each contact in the last sweep
-};
-
 /// Speed that velocities are judged by.
 Real largest_speed(const Bodies& bodies, Index count, Real dt) {
   return max_each(
@@ -93,22 +87,29 @@ void solve_positions(const Sweep& sweep, const ContactOrder& order, int sweeps, 
 
 void ContactSolver::forget() { history_.keys.rows = 0; }
 
-SolverReport ContactSolver::solve(ContactScene& scene, const Bodies& bodies,
-                                  const SolverIterations& iterations) {
+Sweep ContactSolver::prepare(ContactScene& scene, const Bodies& bodies) {
   finder_.find(scene, bodies, keys_);
   order_ = coloring_.arrange(keys_, scene.particles);
   build_contacts(scene, keys_, coloring_.place(), history_, contacts_);
+  if (residuals_.extent(0) < contacts_.extent(0))
+    residuals_ = Array<Real>("dem.residuals", contacts_.extent(0));
+  return {contacts_, bodies, residuals_};
+}
+
+SolverReport ContactSolver::solve(ContactScene& scene, const Bodies& bodies,
+                                  const SolverIterations& iterations) {
   SolverReport report;
-  if (order_.count > 0) {
-    if (residuals_.extent(0) < contacts_.extent(0))
-      residuals_ = Array<Real>("dem.residuals", contacts_.extent(0));
-    const Sweep sweep{contacts_, bodies, residuals_};
-    if (scene.dt > 0 && iterations.velocity > 0) {
-      const Real speed = largest_speed(bodies, scene.particles.count, scene.dt);
-      solve_velocities(sweep, order_, speed, scene.dt, iterations.velocity, report);
-    }
-    solve_positions(sweep, order_, iterations.position, report);
+  Kokkos::Timer timer;
+  const Sweep sweep = prepare(scene, bodies);
+  Kokkos::fence("dem::solve");
+  report.search_seconds = timer.seconds();
+  if (order_.count > 0 && scene.dt > 0 && iterations.velocity > 0) {
+    const Real speed = largest_speed(bodies, scene.particles.count, scene.dt);
+    solve_velocities(sweep, order_, speed, scene.dt, iterations.velocity, report);
   }
+  report.velocity_seconds = timer.seconds() - report.search_seconds;
+  if (order_.count > 0) solve_positions(sweep, order_, iterations.position, report);
+  report.position_seconds = timer.seconds() - report.search_seconds - report.velocity_seconds;
   if (scene.dt > 0) record_history(keys_, contacts_, history_);
   return report;
 }

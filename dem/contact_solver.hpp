@@ -15,6 +15,14 @@ struct SolverReport {
   int impact_sweeps = 0, force_sweeps = 0, position_sweeps = 0;
   Real velocity_residual = 0;  // change of the relative velocity in the last sweep, over the largest speed
   Real position_residual = 0;  // largest overlap before the last sweep, in radii
+  Real search_seconds = 0, velocity_seconds = 0, position_seconds = 0;
+};
+
+/// What a sweep over all contacts works on.
+struct Sweep {
+  Array<Contact> contacts;
+  Bodies bodies;
+  Array<Real> residuals;  // of each contact in the last sweep
 };
 
 class ContactSolver {
@@ -29,6 +37,8 @@ class ContactSolver {
   const ContactOrder& order() const { return order_; }
 
  private:
+  Sweep prepare(ContactScene& scene, const Bodies& bodies);
+
   ContactFinder finder_;
   ContactColoring coloring_;
   ContactKeys keys_;
