@@ -37,7 +37,7 @@ function(peclet_kokkos_options out)
     list(APPEND options -DKokkos_ENABLE_OPENMP=ON)
   endif()
   if(PECLET_BACKEND STREQUAL "cuda")
-    list(APPEND options -DKokkos_ENABLE_CUDA=ON "-DKokkos_ARCH_${PECLET_CUDA_ARCH}=ON"
+    list(APPEND options -DKokkos_ENABLE_CUDA=ON -DCMAKE_INSTALL_RPATH_USE_LINK_PATH=ON "-DKokkos_ARCH_${PECLET_CUDA_ARCH}=ON"
          "-DCUDA_cuda_driver_LIBRARY=${CUDA_cuda_driver_LIBRARY}" "-DCUDAToolkit_ROOT=${CUDAToolkit_BIN_DIR}/..")
   endif()
   set(${out} "${options}" PARENT_SCOPE)
@@ -61,7 +61,7 @@ function(peclet_build_kokkos)
   set(prefix "${folder}/kokkos-${PECLET_BACKEND}-${key}")
   set(PECLET_KOKKOS_DIR "${prefix}/lib/cmake/Kokkos" PARENT_SCOPE)
 
-  file(LOCK "${PECLET_CACHE_DIR}/lock" GUARD FUNCTION TIMEOUT 1800)
+  file(LOCK "${prefix}.lock" GUARD FUNCTION TIMEOUT 1800)
   if(EXISTS "${prefix}/complete")
     message(STATUS "Kokkos: our own build in ${prefix}")
     return()

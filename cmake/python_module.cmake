@@ -23,7 +23,8 @@ function(peclet_add_python_module name library package)
   string(REGEX REPLACE "[^/]+" ".." to_root "${package}")
   set_target_properties(
     _${name} PROPERTIES LIBRARY_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/${package}"
-                        INSTALL_RPATH "$ORIGIN/${to_root}/${PECLET_LIBRARY_FOLDER}")
+                        INSTALL_RPATH "$ORIGIN/${to_root}/${PECLET_LIBRARY_FOLDER}"
+                        INSTALL_RPATH_USE_LINK_PATH $<STREQUAL:${PECLET_BACKEND},cuda>)
   install(TARGETS _${name} LIBRARY DESTINATION ${package})
 
   # The stub is written by importing the module, which a machine without the GPU's driver cannot do.
