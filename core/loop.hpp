@@ -231,6 +231,17 @@ void for_each_entry(const std::string& label, int columns, int rows, const Body&
   }
 }
 
+/// body(n) for 0 <= n < count: in order on the host, where sums must not depend on the number of threads, and
+/// in any order on a device, where atomic sums are rounded as they come.
+template <class Body>
+void for_each_ordered_on_host(const std::string& label, Index count, const Body& body) {
+  if constexpr (runs_on_host) {
+    for (Index n = 0; n < count; ++n) body(n);
+  } else {
+    for_each(label, count, body);
+  }
+}
+
 /// body(i, j, k, sum, squares, largest) adds to two sums and raises a maximum, in one pass.
 template <class Body>
 void reduce_cells(const std::string& label, const RowRanges& ranges, const Body& body, Real& sum, Real& squares,

@@ -13,8 +13,9 @@
 namespace peclet::flow {
 
 struct PressureSettings {
-  Real relative_tolerance = 1e-6;                                ///< of the 2-norm of the right-hand side
-  Real residual_limit = std::numeric_limits<Real>::infinity();  ///< bound on the largest residual, must hold too
+  Real relative_tolerance = 1e-6;  ///< of the 2-norm of the right-hand side
+  Real residual_limit =
+      std::numeric_limits<Real>::infinity();  ///< bound on the largest residual, must hold too
   int max_iterations = 100;
 };
 

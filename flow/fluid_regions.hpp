@@ -1,0 +1,106 @@
+#pragma once
+// Connected regions of fluid: cells that can be reached from each other through open faces.
+//
+// The faces of a row of cells are kept as bit masks. A run of linked cells is the unit of the search; runs
+// are merged into trees whose root is the smallest cell index, whatever the order of the work
+// [HeChaoSuzuki2008].
+#include <cstdint>
+#include <vector>
+
+#include "flow/poisson_operator.hpp"
+
+namespace peclet::flow {
+
+/// The masks of one level. In x, y, z, bit i of a row tells whether the low face of cell i is open; in open,
+/// whether the cell has any open face.
+struct RowMasks {
+  using Word = std::uint64_t;
+  static constexpr int bits = 64;
+
+  LevelShape shape;
+  int words;  ///< per row
+  Word *x, *y, *z, *open;
+  int* parent;
+
+  KOKKOS_INLINE_FUNCTION Index row(int j, int k) const { return j + static_cast<Index>(k) * shape.cells[1]; }
+  KOKKOS_INLINE_FUNCTION int first_cell(Index row) const { return static_cast<int>(row * shape.cells[0]); }
+  /// Cells that begin a run.
+  KOKKOS_INLINE_FUNCTION Word starts(Index row, int word) const {
+    const Word linked_inside = word == 0 ? x[row * words] & ~Word(1) : x[row * words + word];
+    return open[row * words + word] & ~linked_inside;
+  }
+  /// Index of the cell that begins the run of cell i.
+  KOKKOS_INLINE_FUNCTION int run_of(Index row, int i) const {
+    int word = i / bits;
+    Word candidates = starts(row, word) & (~Word(0) >> (bits - 1 - i % bits));
+    while (candidates == 0) candidates = starts(row, --word);
+    return first_cell(row) + word * bits + bits - 1 - Kokkos::countl_zero(candidates);
+  }
+  /// End of the run that begins at cell i.
+  KOKKOS_INLINE_FUNCTION int run_end(Index row, int i) const {
+    int word = (i + 1) / bits;
+    if (word == words) return shape.cells[0];
+    Word ends = ~(x[row * words + word] & open[row * words + word]) & (~Word(0) << ((i + 1) % bits));
+    while (ends == 0) {
+      if (++word == words) return shape.cells[0];
+      ends = ~(x[row * words + word] & open[row * words + word]);
+    }
+    const int end = word * bits + Kokkos::countr_zero(ends);
+    return end < shape.cells[0] ? end : shape.cells[0];
+  }
+  KOKKOS_INLINE_FUNCTION int root_of(int cell) const {
+    while (parent[cell] != cell) cell = parent[cell];
+    return cell;
+  }
+  /// The root with the larger index is hung below the other one.
+  KOKKOS_INLINE_FUNCTION void unite(int a, int b) const {
+    for (;;) {
+      a = root_of(a);
+      b = root_of(b);
+      if (a == b) return;
+      const int high = a > b ? a : b, low = a > b ? b : a;
+      if (Kokkos::atomic_compare_exchange(&parent[high], high, low) == high) return;
+    }
+  }
+  /// Region of the run that begins at a cell, once the regions are numbered.
+  KOKKOS_INLINE_FUNCTION int region_of(int cell) const {
+    while (parent[cell] >= 0) cell = parent[cell];
+    return -parent[cell] - 1;
+  }
+};
+
+class FluidRegions {
+ public:
+  FluidRegions() = default;
+  explicit FluidRegions(const LevelShape& shape);
+
+  /// Reads the faces of all cells and finds the regions.
+  void find(const LevelOperator<OpenFraction>& op);
+  /// The same after changes on the faces of cells in the boxes.
+  void update(const LevelOperator<OpenFraction>& op, const std::vector<Box>& changed);
+
+  Index number_of_regions() const { return number_; }
+  Index number_of_open_cells() const { return open_cells_; }
+  /// Whether a Fixed side touches the first region.
+  bool first_is_fixed() const { return first_is_fixed_ != 0; }
+  /// Subtracts from rhs its mean over each region that no Fixed side touches.
+  void remove_means(const Field<Real>& rhs) const;
+  std::size_t bytes() const;
+
+ private:
+  RowMasks masks() const;
+  void reserve(Index number);
+  void merge_runs(const LevelOperator<OpenFraction>& op);
+
+  LevelShape shape_;
+  Array<std::uint64_t> links_x_, links_y_, links_z_, open_;
+  Array<int> parent_;
+  Array<Index> row_offset_;
+  Array<Index> cells_;  ///< per region, like fixed_ and mean_
+  Array<int> fixed_;
+  Array<Real> mean_;
+  Index number_ = 0, open_cells_ = 0;
+  int first_is_fixed_ = 0;
+};
+
+}  // namespace peclet::flow

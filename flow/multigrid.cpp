@@ -1,0 +1,174 @@
+#include "flow/multigrid.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <string>
+
+namespace peclet::flow {
+namespace {
+
+/// Axes along which the cells are merged next: those whose spacing is close to the smallest.
+Int3 merge_ratio(const LevelShape& shape, const Real3& spacing) {
+  constexpr Real close = 1.42;  // square root of 2: keeps the ratio of the spacings below 2
+  Real smallest = std::numeric_limits<Real>::infinity();
+  for (int axis = 0; axis < 3; ++axis)
+    if (shape.cells[axis] > 1) smallest = std::min(smallest, spacing[axis] * shape.factor[axis]);
+  Int3 ratio;
+  for (int axis = 0; axis < 3; ++axis)
+    ratio[axis] = shape.cells[axis] > 1 && spacing[axis] * shape.factor[axis] <= close * smallest ? 2 : 1;
+  return ratio;
+}
+
+/// Cells of a coarser level whose faces depend on the faces of finest cells in the box.
+Box dependent_cells(const LevelShape& shape, const Box& changed) {
+  const auto floor_divide = [](int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); };
+  Box box;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int n = shape.cells[axis];
+    int low = floor_divide(changed.low[axis] - 1, shape.factor[axis]);
+    int high = floor_divide(changed.high[axis] + 1, shape.factor[axis]) + 1;
+    if (!shape.sides.is_periodic(axis)) {
+      low = std::max(low, 0);
+      high = std::min(high, n);
+    } else if (high - low >= n || low < -n || high > 2 * n) {
+      low = 0;
+      high = n;
+    }
+    box.low[axis] = low;
+    box.high[axis] = std::max(high, low);
+  }
+  return box;
+}
+
+RowRanges prolongation_rows(const RowRanges& rows, const Transfer& transfer) {
+  const Int3 ratio{transfer.ratio[0], 1, 1};
+  RowRanges result = rows;
+  if (ratio[0] == 1) return result;
+  result.box.low[0] = rows.box.low[0] / 2;
+  result.box.high[0] = (rows.box.high[0] + 1) / 2;
+  if (!rows.first.data()) return result;
+  const Index count = rows.number_of_rows();
+  const Array<int> first("row_begin", count), last("row_end", count);
+  for_each(
+      "flow::rows", count, KOKKOS_LAMBDA(Index row) {
+        first(row) = rows.first(row) / 2;
+        last(row) = (rows.last(row) + 1) / 2;
+      });
+  result.first = first;
+  result.last = last;
+  return result;
+}
+
+template <class T>
+std::size_t bytes_of(const Field<T>& field) {
+  return field.array().span() * sizeof(T);
+}
+
+std::size_t bytes_of(const RowRanges& rows) { return (rows.first.span() + rows.last.span()) * sizeof(int); }
+
+}  // namespace
+
+Multigrid::Multigrid(const Int3& cells, const Real3& spacing, const PressureSides& sides) {
+  Real smallest = std::numeric_limits<Real>::infinity();
+  for (int axis = 0; axis < 3; ++axis)
+    if (cells[axis] > 1) smallest = std::min(smallest, spacing[axis]);
+  if (!(smallest < std::numeric_limits<Real>::infinity())) smallest = spacing[0];
+  for (int axis = 0; axis < 3; ++axis)
+    weights_[axis] = open_fraction_unit * (smallest / spacing[axis]) * (smallest / spacing[axis]);
+
+  stiffness_ = 1 / (smallest * smallest);
+
+  Int3 factor{1, 1, 1};
+  for (;;) {
+    Level level;
+    level.shape = LevelShape(cells, factor, sides);
+    const std::string name = "multigrid_" + std::to_string(levels_.size());
+    level.fields.rhs = Field<float>(name + ".rhs", level.shape.layout);
+    level.fields.solution = Field<float>(name + ".solution", level.shape.layout);
+    level.fields.scratch = Field<float>(name + ".scratch", level.shape.layout);
+    if (!levels_.empty()) {
+      level.coefficients = FaceVector<float>(name + ".coefficients", level.shape.layout);
+      level.op = LevelOperator<float>(level.shape, level.coefficients, Real3{1, 1, 1});
+    }
+    levels_.push_back(level);
+    if (level.shape.number_of_cells() <= CoarseSolver::largest_size) break;
+    const Int3 ratio = merge_ratio(level.shape, spacing);
+    for (int axis = 0; axis < 3; ++axis) factor[axis] *= ratio[axis];
+    levels_.back().transfer.ratio = ratio;
+  }
+  coarse_solver_ = CoarseSolver(levels_.back().shape);
+}
+
+void Multigrid::set_open_fractions(const FaceVector<OpenFraction>& open, const RowRanges& rows) {
+  open_ = open;
+  finest_ = LevelOperator<OpenFraction>(levels_[0].shape, open, weights_);
+  for (std::size_t l = 0; l < levels_.size(); ++l) {
+    Level& level = levels_[l];
+    const PressureSides& sides = level.shape.sides;
+    level.rows = l == 0 ? aligned_rows(rows, level.shape)
+                        : coarse_rows(levels_[l - 1].rows, level.shape, levels_[l - 1].transfer.ratio);
+    level.plan = SweepPlan(level.shape.cells, level.rows.box,
+                           {sides.is_periodic(0), sides.is_periodic(1), sides.is_periodic(2)});
+    level.fields.rhs.fill(0);
+    level.fields.solution.fill(0);
+    level.fields.scratch.fill(0);
+    if (l == 0) continue;
+    Transfer& transfer = levels_[l - 1].transfer;
+    transfer.coarse_shape = level.shape;
+    transfer.coarse_rows = level.rows;
+    transfer.prolongation_rows = prolongation_rows(levels_[l - 1].rows, transfer);
+  }
+  update({Box{{0, 0, 0}, levels_[0].shape.cells}});
+}
+
+void Multigrid::update(const std::vector<Box>& changed) const {
+  for (std::size_t l = 1; l < levels_.size(); ++l) {
+    const LevelShape& shape = levels_[l].shape;
+    for (const Box& box : changed) {
+      const Box cells = dependent_cells(shape, box);
+      if (l == 1)
+        derive_coefficients(finest_, shape, cells, levels_[l].coefficients);
+      else
+        derive_coefficients(levels_[l - 1].op, shape, cells, levels_[l].coefficients);
+    }
+  }
+  if (levels_.size() == 1)
+    coarse_solver_.set_operator(finest_);
+  else
+    coarse_solver_.set_operator(levels_.back().op);
+}
+
+Real Multigrid::apply() const {
+  const std::size_t last = levels_.size() - 1;
+  for (std::size_t l = 0; l < last; ++l) {
+    const Level& level = levels_[l];
+    const Field<float>& coarse_rhs = levels_[l + 1].fields.rhs;
+    if (l == 0)
+      smooth_and_restrict(finest_, level.plan, level.rows, level.transfer, level.fields, coarse_rhs);
+    else
+      smooth_and_restrict(level.op, level.plan, level.rows, level.transfer, level.fields, coarse_rhs);
+  }
+  coarse_solver_.solve(levels_[last].fields.rhs, levels_[last].fields.solution);
+  for (std::size_t l = last; l-- > 1;) {
+    const Level& level = levels_[l];
+    prolong_and_smooth(level.op, level.plan, level.rows, level.transfer, level.fields,
+                       levels_[l + 1].fields.solution);
+  }
+  const Level& finest = levels_[0];
+  if (last == 0) return dot(finest.fields.solution, finest.fields.rhs, finest.rows, finest.plan);
+  return prolong_and_smooth(finest_, finest.plan, finest.rows, finest.transfer, finest.fields,
+                            levels_[1].fields.solution);
+}
+
+std::size_t Multigrid::bytes() const {
+  std::size_t total = coarse_solver_.bytes();
+  for (const Level& level : levels_) {
+    total += bytes_of(level.fields.rhs) + bytes_of(level.fields.solution) + bytes_of(level.fields.scratch);
+    for (int axis = 0; axis < 3; ++axis)
+      if (level.coefficients[axis].is_allocated()) total += bytes_of(level.coefficients[axis]);
+    total += bytes_of(level.rows) + bytes_of(level.transfer.prolongation_rows);
+  }
+  return total;
+}
+
+}  // namespace peclet::flow

@@ -1,0 +1,100 @@
+#include "flow/poisson_operator.hpp"
+
+#include <algorithm>
+
+namespace peclet::flow {
+namespace {
+
+constexpr int vector_length = Layout::alignment;
+
+KOKKOS_INLINE_FUNCTION int wrapped(int index, int n) {
+  return index < 0 ? index + n : (index >= n ? index - n : index);
+}
+
+/// Sum of the fine coefficients on a coarse face normal to axis, scaled to the coarse distance.
+template <class Coefficient>
+KOKKOS_INLINE_FUNCTION float coarse_coefficient(const LevelOperator<Coefficient>& fine,
+                                                const LevelShape& coarse, int axis, const Int3& face) {
+  if (coarse.is_collapsed(axis)) return 0;
+  Int3 low, high;
+  for (int a = 0; a < 3; ++a) {
+    const int ratio = coarse.factor[a] / fine.shape.factor[a], n = fine.shape.cells[a];
+    low[a] = ratio * face[a] < n ? ratio * face[a] : n;
+    high[a] = a == axis ? low[a] + 1 : (low[a] + ratio < n ? low[a] + ratio : n);
+  }
+  Real sum = 0;
+  for (int k = low[2]; k < high[2]; ++k)
+    for (int j = low[1]; j < high[1]; ++j)
+      for (int i = low[0]; i < high[0]; ++i) sum += fine.face(axis, i, j, k);
+  return static_cast<float>(sum * fine.shape.twice_distance(axis, low[axis]) /
+                            coarse.twice_distance(axis, face[axis]));
+}
+
+}  // namespace
+
+template <class Coefficient>
+void derive_coefficients(const LevelOperator<Coefficient>& fine, const LevelShape& coarse, const Box& box,
+                         const FaceVector<float>& coefficients) {
+  const FaceVector<float> c = coefficients;
+  for_each_cell(
+      "flow::coarsen", box, KOKKOS_LAMBDA(int i, int j, int k) {
+        const Int3 cell{wrapped(i, coarse.cells[0]), wrapped(j, coarse.cells[1]),
+                        wrapped(k, coarse.cells[2])};
+        for (int axis = 0; axis < 3; ++axis) {
+          Int3 face = cell;
+          c[axis](face[0], face[1], face[2]) = coarse_coefficient(fine, coarse, axis, face);
+          if (++face[axis] == coarse.cells[axis])
+            c[axis](face[0], face[1], face[2]) = coarse_coefficient(fine, coarse, axis, face);
+        }
+      });
+}
+
+template void derive_coefficients(const LevelOperator<OpenFraction>&, const LevelShape&, const Box&,
+                                  const FaceVector<float>&);
+template void derive_coefficients(const LevelOperator<float>&, const LevelShape&, const Box&,
+                                  const FaceVector<float>&);
+
+RowRanges aligned_rows(const RowRanges& rows, const LevelShape& shape) {
+  return coarse_rows(rows, shape, Int3{1, 1, 1});
+}
+
+RowRanges coarse_rows(const RowRanges& fine, const LevelShape& coarse, const Int3& ratio) {
+  Box box;
+  for (int axis = 0; axis < 3; ++axis) {
+    box.low[axis] = fine.box.low[axis] / ratio[axis];
+    box.high[axis] = (fine.box.high[axis] + ratio[axis] - 1) / ratio[axis];
+  }
+  const int n = coarse.cells[0];
+  box.low[0] = box.low[0] / vector_length * vector_length;
+  box.high[0] = std::min(n, (box.high[0] + vector_length - 1) / vector_length * vector_length);
+  RowRanges rows(box);
+  if (!fine.first.data()) return rows;
+
+  const Index number_of_rows = rows.number_of_rows(), ny = box.extent(1), fine_ny = fine.box.extent(1);
+  const Array<int> first("row_begin", number_of_rows), last("row_end", number_of_rows);
+  for_each(
+      "flow::rows", number_of_rows, KOKKOS_LAMBDA(Index row) {
+        const int j = box.low[1] + static_cast<int>(row % ny), k = box.low[2] + static_cast<int>(row / ny);
+        int begin = fine.box.high[0], end = fine.box.low[0];
+        for (int dk = 0; dk < ratio[2]; ++dk)
+          for (int dj = 0; dj < ratio[1]; ++dj) {
+            const int fj = j * ratio[1] + dj, fk = k * ratio[2] + dk;
+            if (!fine.box.contains(fine.box.low[0], fj, fk)) continue;
+            const Index n = (fj - fine.box.low[1]) + (fk - fine.box.low[2]) * fine_ny;
+            if (fine.begin(n) >= fine.end(n)) continue;
+            begin = fine.begin(n) < begin ? fine.begin(n) : begin;
+            end = fine.end(n) > end ? fine.end(n) : end;
+          }
+        if (begin < end) {
+          begin = begin / ratio[0] / vector_length * vector_length;
+          end = ((end + ratio[0] - 1) / ratio[0] + vector_length - 1) / vector_length * vector_length;
+        }
+        first(row) = begin < end ? begin : 0;
+        last(row) = begin < end ? (end < n ? end : n) : 0;
+      });
+  rows.first = first;
+  rows.last = last;
+  return rows;
+}
+
+}  // namespace peclet::flow

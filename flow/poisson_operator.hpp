@@ -1,0 +1,199 @@
+#pragma once
+// The operator of the pressure equation on one level of the multigrid hierarchy, row by row.
+//
+//   (A phi)_cell = sum over its faces of  c_face (phi_cell - phi_neighbour)
+//
+// c is the face area times the open fraction over the distance of the cell centres, in units in which a
+// finest cell has volume 1 and the smallest spacing is 1. Beyond a side the neighbour is the cell across
+// (Periodic), the cell itself (Closed) or minus the cell itself (Fixed).
+#include <type_traits>
+
+#include "core/field.hpp"
+#include "core/loop.hpp"
+#include "flow/open_fraction.hpp"
+
+namespace peclet::flow {
+
+/// Cells of one level. Along axis a, cell I covers the finest cells I factor[a] to (I + 1) factor[a] - 1,
+/// as far as they exist: the last cell may be smaller.
+struct LevelShape {
+  Int3 cells{1, 1, 1};
+  Int3 finest_cells{1, 1, 1};
+  Int3 factor{1, 1, 1};
+  Layout layout;
+  PressureSides sides;
+
+  LevelShape() = default;
+  LevelShape(const Int3& finest, const Int3& coarsening, const PressureSides& box_sides)
+      : finest_cells(finest), factor(coarsening), sides(box_sides) {
+    for (int axis = 0; axis < 3; ++axis) cells[axis] = (finest[axis] + factor[axis] - 1) / factor[axis];
+    layout = Layout(cells);
+  }
+  Index number_of_cells() const { return static_cast<Index>(cells[0]) * cells[1] * cells[2]; }
+  /// The only cell along a periodic axis is its own neighbour: no exchange along that axis.
+  KOKKOS_INLINE_FUNCTION bool is_collapsed(int axis) const {
+    return cells[axis] == 1 && sides.is_periodic(axis);
+  }
+  /// Width of a cell along axis in finest cells.
+  KOKKOS_INLINE_FUNCTION int width(int axis, int cell) const {
+    const int rest = finest_cells[axis] - cell * factor[axis];
+    return rest < factor[axis] ? rest : factor[axis];
+  }
+  /// Twice the distance of the two cell centres beside a face, in finest cells.
+  KOKKOS_INLINE_FUNCTION int twice_distance(int axis, int face) const {
+    const int n = cells[axis];
+    const bool at_side = face == 0 || face == n;
+    if (!at_side) return width(axis, face - 1) + width(axis, face);
+    if (sides.is_periodic(axis)) return width(axis, n - 1) + width(axis, 0);
+    return 2 * width(axis, face == 0 ? 0 : n - 1);
+  }
+};
+
+/// The row beside another one, to be multiplied by sign.
+template <class T>
+struct SideRow {
+  T* row;
+  T sign;
+  KOKKOS_INLINE_FUNCTION T operator()(int i) const { return runs_on_host ? row[i] : sign * row[i]; }
+};
+
+/// A row of cells and the four rows beside it. On the host the values beyond the ends of the row and beyond
+/// Fixed sides are put into ghost cells that no other row reads; on a device they are selected.
+template <class T>
+struct NeighbourRows {
+  T* centre;
+  SideRow<T> south, north, below, above;
+  int n, west_source, east_source;
+  T west_sign, east_sign;
+
+  KOKKOS_INLINE_FUNCTION T west(int i) const {
+    if (runs_on_host) return centre[i - 1];
+    return i > 0 ? centre[i - 1] : west_sign * centre[west_source];
+  }
+  KOKKOS_INLINE_FUNCTION T east(int i) const {
+    if (runs_on_host) return centre[i + 1];
+    return i < n - 1 ? centre[i + 1] : east_sign * centre[east_source];
+  }
+};
+
+template <class T>
+KOKKOS_INLINE_FUNCTION SideRow<T> row_beside(const LevelShape& shape, T* centre, int axis, int index,
+                                             int high) {
+  const int n = shape.cells[axis];
+  const Index step = high ? shape.layout.stride(axis) : -shape.layout.stride(axis);
+  if (index != (high ? n - 1 : 0)) return {centre + step, T(1)};
+  const PressureSide side = shape.sides.side[axis][high];
+  if (side == PressureSide::Periodic) return {centre - (n - 1) * step, T(1)};
+  if (side == PressureSide::Closed) return {centre, T(1)};
+  if (!runs_on_host) return {centre, T(-1)};
+  for (int i = 0; i < shape.cells[0]; ++i) centre[step + i] = -centre[i];
+  return {centre + step, T(1)};
+}
+
+template <class T>
+KOKKOS_INLINE_FUNCTION NeighbourRows<T> neighbour_rows(const LevelShape& shape, T* field, int j, int k) {
+  const int n = shape.cells[0];
+  T* const centre = field + shape.layout(0, j, k);
+  const bool periodic = shape.sides.is_periodic(0);
+  NeighbourRows<T> rows{centre,
+                        row_beside(shape, centre, 1, j, 0),
+                        row_beside(shape, centre, 1, j, 1),
+                        row_beside(shape, centre, 2, k, 0),
+                        row_beside(shape, centre, 2, k, 1),
+                        n,
+                        periodic ? n - 1 : 0,
+                        periodic ? 0 : n - 1,
+                        shape.sides.side[0][0] == PressureSide::Fixed ? T(-1) : T(1),
+                        shape.sides.side[0][1] == PressureSide::Fixed ? T(-1) : T(1)};
+  if (runs_on_host) {
+    centre[-1] = rows.west_sign * centre[rows.west_source];
+    centre[n] = rows.east_sign * centre[rows.east_source];
+  }
+  return rows;
+}
+
+/// Coefficients of the six faces of the cells of a row, in arithmetic T.
+template <class Coefficient, class T>
+struct CoefficientRow {
+  const Coefficient *x, *south, *north, *below, *above;
+  T weight_x, weight_y, weight_z;
+
+  /// Sum of the six coefficients; 0 for a cell without an open face, and only there.
+  KOKKOS_INLINE_FUNCTION T diagonal(int i) const {
+    return weight_x * (value(x[i]) + value(x[i + 1])) + weight_y * (value(south[i]) + value(north[i])) +
+           weight_z * (value(below[i]) + value(above[i]));
+  }
+  /// Sum of coefficient times neighbour.
+  KOKKOS_INLINE_FUNCTION T neighbours(const NeighbourRows<T>& phi, int i) const {
+    return weight_x * (value(x[i]) * phi.west(i) + value(x[i + 1]) * phi.east(i)) +
+           weight_y * (value(south[i]) * phi.south(i) + value(north[i]) * phi.north(i)) +
+           weight_z * (value(below[i]) * phi.below(i) + value(above[i]) * phi.above(i));
+  }
+  /// -(A phi), from differences: exact to the rounding of the second difference where faces are open.
+  KOKKOS_INLINE_FUNCTION T laplacian(const NeighbourRows<T>& phi, int i) const {
+    const T c = phi.centre[i];
+    return weight_x * (value(x[i + 1]) * (phi.east(i) - c) - value(x[i]) * (c - phi.west(i))) +
+           weight_y * (value(north[i]) * (phi.north(i) - c) - value(south[i]) * (c - phi.south(i))) +
+           weight_z * (value(above[i]) * (phi.above(i) - c) - value(below[i]) * (c - phi.below(i)));
+  }
+  /// Half the sum of coefficient times squared difference; its sum over all cells is phi . A phi.
+  KOKKOS_INLINE_FUNCTION T energy(const NeighbourRows<T>& phi, int i) const {
+    const T c = phi.centre[i];
+    const T w = c - phi.west(i), e = c - phi.east(i), s = c - phi.south(i), n = c - phi.north(i),
+            b = c - phi.below(i), a = c - phi.above(i);
+    return T(0.5) * (weight_x * (value(x[i]) * w * w + value(x[i + 1]) * e * e) +
+                     weight_y * (value(south[i]) * s * s + value(north[i]) * n * n) +
+                     weight_z * (value(below[i]) * b * b + value(above[i]) * a * a));
+  }
+
+ private:
+  KOKKOS_INLINE_FUNCTION static T value(Coefficient c) {
+    if constexpr (std::is_integral_v<Coefficient>) return static_cast<T>(static_cast<int>(c));
+    return static_cast<T>(c);
+  }
+};
+
+/// The operator of one level. Coefficients are stored like open fractions; c = weight * coefficient.
+template <class Coefficient>
+struct LevelOperator {
+  LevelShape shape;
+  const Coefficient *x = nullptr, *y = nullptr, *z = nullptr;
+  Real weight[3] = {1, 1, 1};
+
+  LevelOperator() = default;
+  LevelOperator(const LevelShape& level, const FaceVector<Coefficient>& faces, const Real3& weights)
+      : shape(level), x(faces.x.array().data()), y(faces.y.array().data()), z(faces.z.array().data()) {
+    for (int axis = 0; axis < 3; ++axis) weight[axis] = level.is_collapsed(axis) ? 0 : weights[axis];
+  }
+
+  template <class T>
+  KOKKOS_INLINE_FUNCTION CoefficientRow<Coefficient, T> row(int j, int k) const {
+    const Index n = shape.layout(0, j, k);
+    return {x + n,
+            y + n,
+            y + n + shape.layout.pitch_y,
+            z + n,
+            z + n + shape.layout.pitch_z,
+            static_cast<T>(weight[0]),
+            static_cast<T>(weight[1]),
+            static_cast<T>(weight[2])};
+  }
+  /// Coefficient of the face low of cell (i, j, k), or of the face of index n beyond the last cell.
+  KOKKOS_INLINE_FUNCTION Real face(int axis, int i, int j, int k) const {
+    const Index n = shape.layout(i, j, k);
+    return weight[axis] * static_cast<Real>(axis == 0 ? x[n] : (axis == 1 ? y[n] : z[n]));
+  }
+};
+
+/// Rows of a level: they cover the rows of the children, and begin and end on whole vectors where they can.
+RowRanges coarse_rows(const RowRanges& fine, const LevelShape& coarse, const Int3& ratio);
+/// The same rows, widened to whole vectors.
+RowRanges aligned_rows(const RowRanges& rows, const LevelShape& shape);
+
+/// Coarse coefficients: the sum of the finest open areas over the face, over the distance of the coarse
+/// centres; on the faces of the cells of a box, which may reach over periodic sides.
+template <class Coefficient>
+void derive_coefficients(const LevelOperator<Coefficient>& fine, const LevelShape& coarse, const Box& box,
+                         const FaceVector<float>& coefficients);
+
+}  // namespace peclet::flow

@@ -1,0 +1,247 @@
+#include "flow/smoothers.hpp"
+
+namespace peclet::flow {
+namespace {
+
+/// old + weight (target / diagonal - old), or zero in a cell without an open face.
+KOKKOS_INLINE_FUNCTION float relaxed(float old, float weight, float target, float diagonal) {
+  const float value = weight * target / diagonal + (1 - weight) * old;
+  return diagonal > 0 ? value : 0;
+}
+
+/// Jacobi step from zero.
+template <class Coefficient>
+struct FirstStep {
+  using Result = Nothing;
+  static constexpr bool may_overrun = true;
+  LevelOperator<Coefficient> op;
+  const float* rhs;
+  float* out;
+  float weight;
+
+  struct Row {
+    CoefficientRow<Coefficient, float> c;
+    const float* rhs;
+    float* out;
+    float weight;
+    KOKKOS_INLINE_FUNCTION void operator()(int i) const {
+      out[i] = relaxed(0, weight, rhs[i], c.diagonal(i));
+    }
+  };
+  KOKKOS_INLINE_FUNCTION Row row(int j, int k) const {
+    const Index n = op.shape.layout(0, j, k);
+    return {op.template row<float>(j, k), rhs + n, out + n, weight};
+  }
+};
+
+/// out = in + weight D^-1 (rhs - A in); the result is out . rhs if Total.
+template <class Coefficient, class Reduction>
+struct JacobiStep {
+  using Result = Reduction;
+  static constexpr bool may_overrun = true;
+  LevelOperator<Coefficient> op;
+  const float* rhs;
+  float* in;
+  float* out;
+  float weight;
+
+  struct Row {
+    CoefficientRow<Coefficient, float> c;
+    NeighbourRows<float> in;
+    const float* rhs;
+    float* out;
+    float weight;
+    KOKKOS_INLINE_FUNCTION auto operator()(int i) const {
+      const float value = relaxed(in.centre[i], weight, rhs[i] + c.neighbours(in, i), c.diagonal(i));
+      out[i] = value;
+      if constexpr (std::is_same_v<Reduction, Total>) return value * rhs[i];
+    }
+  };
+  KOKKOS_INLINE_FUNCTION Row row(int j, int k) const {
+    const Index n = op.shape.layout(0, j, k);
+    return {op.template row<float>(j, k), neighbour_rows(op.shape, in, j, k), rhs + n, out + n, weight};
+  }
+};
+
+/// out = rhs - A in.
+template <class Coefficient>
+struct Residual {
+  using Result = Nothing;
+  static constexpr bool may_overrun = true;
+  LevelOperator<Coefficient> op;
+  const float* rhs;
+  float* in;
+  float* out;
+
+  struct Row {
+    CoefficientRow<Coefficient, float> c;
+    NeighbourRows<float> in;
+    const float* rhs;
+    float* out;
+    KOKKOS_INLINE_FUNCTION void operator()(int i) const { out[i] = rhs[i] + c.laplacian(in, i); }
+  };
+  KOKKOS_INLINE_FUNCTION Row row(int j, int k) const {
+    const Index n = op.shape.layout(0, j, k);
+    return {op.template row<float>(j, k), neighbour_rows(op.shape, in, j, k), rhs + n, out + n};
+  }
+};
+
+/// Coarse cell = sum of its children.
+template <int RatioX>
+struct SumOfChildren {
+  using Result = Nothing;
+  static constexpr bool may_overrun = false;
+  LevelShape fine_shape, coarse_shape;
+  Int3 ratio;
+  float* fine;
+  float* coarse;
+
+  struct Row {
+    const float *first, *next_y, *next_z, *next_yz;
+    float has_y, has_z;
+    float* coarse;
+    int last;  ///< children of the last cell beyond the end of the row do not count
+    KOKKOS_INLINE_FUNCTION float column(int i) const {
+      return first[i] + has_y * next_y[i] + has_z * (next_z[i] + has_y * next_yz[i]);
+    }
+    KOKKOS_INLINE_FUNCTION void operator()(int i) const {
+      if constexpr (RatioX == 1) {
+        coarse[i] = column(i);
+      } else if constexpr (runs_on_host) {
+        coarse[i] = column(2 * i) + column(2 * i + 1);
+      } else {
+        coarse[i] = column(2 * i) + (2 * i < last ? column(2 * i + 1) : 0);
+      }
+    }
+  };
+  KOKKOS_INLINE_FUNCTION Row row(int J, int K) const {
+    const int j = J * ratio[1], k = K * ratio[2];
+    const int n = fine_shape.cells[0];
+    const bool has_y = ratio[1] == 2 && j + 1 < fine_shape.cells[1];
+    const bool has_z = ratio[2] == 2 && k + 1 < fine_shape.cells[2];
+    float* const first = fine + fine_shape.layout(0, j, k);
+    float* const next_y = first + has_y * fine_shape.layout.pitch_y;
+    float* const next_z = first + has_z * fine_shape.layout.pitch_z;
+    float* const next_yz = next_y + (next_z - first);
+    if (runs_on_host) first[n] = next_y[n] = next_z[n] = next_yz[n] = 0;
+    return {first,
+            next_y,
+            next_z,
+            next_yz,
+            has_y ? 1.f : 0.f,
+            has_z ? 1.f : 0.f,
+            coarse + coarse_shape.layout(0, J, K),
+            n - 1};
+  }
+};
+
+/// Every child += coarse cell; runs over coarse cells along fine rows.
+template <int RatioX>
+struct AddToChildren {
+  using Result = Nothing;
+  static constexpr bool may_overrun = false;
+  LevelShape fine_shape, coarse_shape;
+  Int3 ratio;
+  const float* coarse;
+  float* fine;
+
+  struct Row {
+    const float* coarse;
+    float* fine;
+    KOKKOS_INLINE_FUNCTION void operator()(int i) const {
+      if constexpr (RatioX == 1) {
+        fine[i] += coarse[i];
+      } else {
+        fine[2 * i] += coarse[i];
+        fine[2 * i + 1] += coarse[i];  // beyond the end of an odd row: a ghost, overwritten before it is read
+      }
+    }
+  };
+  KOKKOS_INLINE_FUNCTION Row row(int j, int k) const {
+    return {coarse + coarse_shape.layout(0, j / ratio[1], k / ratio[2]), fine + fine_shape.layout(0, j, k)};
+  }
+};
+
+struct Product {
+  using Result = Total;
+  static constexpr bool may_overrun = true;
+  Layout layout;
+  const float *a, *b;
+
+  struct Row {
+    const float *a, *b;
+    KOKKOS_INLINE_FUNCTION float operator()(int i) const { return a[i] * b[i]; }
+  };
+  KOKKOS_INLINE_FUNCTION Row row(int j, int k) const {
+    const Index n = layout(0, j, k);
+    return {a + n, b + n};
+  }
+};
+
+template <int RatioX, class Coefficient>
+void smooth_and_restrict_by(const LevelOperator<Coefficient>& op, const SweepPlan& plan,
+                            const RowRanges& rows, const Transfer& transfer, const LevelFields& fields,
+                            const Field<float>& coarse_rhs) {
+  const float* const rhs = fields.rhs.array().data();
+  float* const solution = fields.solution.array().data();
+  float* const scratch = fields.scratch.array().data();
+  sweep("flow::smooth", plan, Stage{rows, FirstStep<Coefficient>{op, rhs, scratch, first_weight}},
+        Stage{rows, JacobiStep<Coefficient, Nothing>{op, rhs, scratch, solution, second_weight}},
+        CoarseningStage{
+            Stage{rows, Residual<Coefficient>{op, rhs, solution, scratch}},
+            Stage{transfer.coarse_rows, SumOfChildren<RatioX>{op.shape, transfer.coarse_shape, transfer.ratio,
+                                                              scratch, coarse_rhs.array().data()}},
+            transfer.ratio});
+}
+
+template <int RatioX, class Coefficient>
+Real prolong_and_smooth_by(const LevelOperator<Coefficient>& op, const SweepPlan& plan, const RowRanges& rows,
+                           const Transfer& transfer, const LevelFields& fields,
+                           const Field<float>& coarse_solution) {
+  const float* const rhs = fields.rhs.array().data();
+  float* const solution = fields.solution.array().data();
+  float* const scratch = fields.scratch.array().data();
+  return sweep("flow::smooth", plan,
+               Stage{transfer.prolongation_rows,
+                     AddToChildren<RatioX>{op.shape, transfer.coarse_shape, transfer.ratio,
+                                           coarse_solution.array().data(), solution}},
+               Stage{rows, JacobiStep<Coefficient, Nothing>{op, rhs, solution, scratch, first_weight}},
+               Stage{rows, JacobiStep<Coefficient, Total>{op, rhs, scratch, solution, second_weight}})
+      .sum;
+}
+
+}  // namespace
+
+template <class Coefficient>
+void smooth_and_restrict(const LevelOperator<Coefficient>& op, const SweepPlan& plan, const RowRanges& rows,
+                         const Transfer& transfer, const LevelFields& fields,
+                         const Field<float>& coarse_rhs) {
+  if (transfer.ratio[0] == 2)
+    smooth_and_restrict_by<2>(op, plan, rows, transfer, fields, coarse_rhs);
+  else
+    smooth_and_restrict_by<1>(op, plan, rows, transfer, fields, coarse_rhs);
+}
+
+template <class Coefficient>
+Real prolong_and_smooth(const LevelOperator<Coefficient>& op, const SweepPlan& plan, const RowRanges& rows,
+                        const Transfer& transfer, const LevelFields& fields,
+                        const Field<float>& coarse_solution) {
+  if (transfer.ratio[0] == 2)
+    return prolong_and_smooth_by<2>(op, plan, rows, transfer, fields, coarse_solution);
+  return prolong_and_smooth_by<1>(op, plan, rows, transfer, fields, coarse_solution);
+}
+
+Real dot(const Field<float>& a, const Field<float>& b, const RowRanges& rows, const SweepPlan& plan) {
+  return sweep("flow::dot", plan, Stage{rows, Product{a.layout(), a.array().data(), b.array().data()}}).sum;
+}
+
+template void smooth_and_restrict(const LevelOperator<OpenFraction>&, const SweepPlan&, const RowRanges&,
+                                  const Transfer&, const LevelFields&, const Field<float>&);
+template void smooth_and_restrict(const LevelOperator<float>&, const SweepPlan&, const RowRanges&,
+                                  const Transfer&, const LevelFields&, const Field<float>&);
+template Real prolong_and_smooth(const LevelOperator<OpenFraction>&, const SweepPlan&, const RowRanges&,
+                                 const Transfer&, const LevelFields&, const Field<float>&);
+template Real prolong_and_smooth(const LevelOperator<float>&, const SweepPlan&, const RowRanges&,
+                                 const Transfer&, const LevelFields&, const Field<float>&);
+
+}  // namespace peclet::flow
