@@ -31,20 +31,30 @@ inline constexpr std::int64_t any_size = -1;
 
 namespace detail {
 
+inline bool accept(PyObject*) { return true; }
+
 template <class T>
-constexpr const char* dtype_name() {
-  if constexpr (std::is_same_v<T, double>)
-    return "float64";
-  else if constexpr (std::is_same_v<T, float>)
-    return "float32";
-  else if constexpr (std::is_same_v<T, std::int32_t>)
-    return "int32";
-  else if constexpr (std::is_same_v<T, std::int64_t>)
-    return "int64";
-  else
-    static_assert(std::is_same_v<T, std::uint8_t>, "element type without a NumPy name");
-  return "uint8";
-}
+struct Dtype;  // NumPy's name of the element type
+template <>
+struct Dtype<double> {
+  static constexpr char name[] = "float64";
+};
+template <>
+struct Dtype<float> {
+  static constexpr char name[] = "float32";
+};
+template <>
+struct Dtype<std::int32_t> {
+  static constexpr char name[] = "int32";
+};
+template <>
+struct Dtype<std::int64_t> {
+  static constexpr char name[] = "int64";
+};
+template <>
+struct Dtype<std::uint8_t> {
+  static constexpr char name[] = "uint8";
+};
 
 inline std::string shape_text(const Shape& shape) {
   std::string text = "(";
@@ -81,7 +91,7 @@ inline nb::object real_array(nb::handle value, const std::string& name) {
   const auto kind = nb::cast<std::string>(array.attr("dtype").attr("kind"));
   const bool is_empty = nb::cast<std::int64_t>(array.attr("size")) == 0;
   if (kind.find_first_of("biuf") == std::string::npos && !is_empty) {
-    const std::string found = value.is_none() ? "None" : nb::cast<std::string>(nb::str(array.attr("dtype")));
+    const std::string found = value.is_none() ? "None" : nb::cast<std::string>(array.attr("dtype").attr("name"));
     throw nb::type_error((name + ": expected real numbers, found " + found).c_str());
   }
   return array;
@@ -106,16 +116,16 @@ template <class T>
 nb::object converted(const nb::object& real, const std::string& name, Order order) {
   const nb::module_ numpy = nb::module_::import_("numpy");
   if constexpr (std::is_integral_v<T>) {
-    const nb::object limits = numpy.attr("iinfo")(dtype_name<T>());
+    const nb::object limits = numpy.attr("iinfo")(Dtype<T>::name);
     const nb::object fits = numpy.attr("logical_and")(numpy.attr("greater_equal")(real, limits.attr("min")),
                                                       numpy.attr("less_equal")(real, limits.attr("max")));
     const nb::object whole = numpy.attr("equal")(numpy.attr("floor")(real), real);
-    require(nb::cast<bool>(numpy.attr("all")(numpy.attr("logical_and")(fits, whole))), name,
-            std::string("integers that fit ") + dtype_name<T>(),
-            nb::cast<std::string>(nb::str(real.attr("dtype"))) + " values that do not");
+    require(nb::cast<bool>(numpy.attr("all")(numpy.attr("logical_and")(fits, whole)).attr("item")()), name,
+            std::string("integers that fit ") + Dtype<T>::name,
+            nb::cast<std::string>(real.attr("dtype").attr("name")) + " values that do not");
   }
   const char* layout = order == Order::C ? "C" : "F";
-  return numpy.attr("require")(real, dtype_name<T>(), nb::make_tuple(layout, "A"));
+  return numpy.attr("require")(real, Dtype<T>::name, nb::make_tuple(layout, "A"));
 }
 
 }  // namespace detail
@@ -144,7 +154,7 @@ class Input {
   std::int64_t extent(std::size_t axis) const { return shape_[axis]; }
   const Shape& shape() const { return shape_; }
   std::span<const T> values() const { return values_; }
-  T operator[](std::size_t n) const { return values_[n]; }
+  T operator[](Index n) const { return values_[static_cast<std::size_t>(n)]; }
 
  private:
   Input(nb::handle value, const std::string& name, Order order) : name_(name), order_(order) {
@@ -162,6 +172,27 @@ class Input {
   std::span<const T> values_;
 };
 
+/// Parameters that accept every object, to be converted by Input; the names appear in signatures and stubs.
+class Numbers : public nb::object {
+  NB_OBJECT_DEFAULT(Numbers, nb::object, "collections.abc.Sequence[float]", detail::accept)
+};
+class Integers : public nb::object {
+  NB_OBJECT_DEFAULT(Integers, nb::object, "collections.abc.Sequence[int]", detail::accept)
+};
+class ArrayLike : public nb::object {
+  NB_OBJECT_DEFAULT(ArrayLike, nb::object, "numpy.typing.ArrayLike", detail::accept)
+};
+
+/// A NumPy array as a result.
+template <class T>
+class NumpyArray : public nb::object {
+ public:
+  static constexpr auto Name = nb::detail::const_name("numpy.typing.NDArray[numpy.") +
+                               nb::detail::const_name(detail::Dtype<T>::name) + nb::detail::const_name("]");
+  explicit NumpyArray(nb::object array) : nb::object(std::move(array)) {}
+  static bool check_(nb::handle) { return true; }
+};
+
 /// Memory that becomes a NumPy array of its own; not initialised.
 template <class T>
 class Output {
@@ -173,9 +204,10 @@ class Output {
 
   T* data() { return values_.get(); }
   std::size_t size() const { return size_; }
-  T& operator[](std::size_t n) { return values_[n]; }
+  T& operator[](Index n) { return values_[static_cast<std::size_t>(n)]; }
+  std::span<T> values() { return {values_.get(), size_}; }
 
-  nb::object release() {
+  NumpyArray<T> release() {
     const std::size_t axes = shape_.size();
     std::vector<std::size_t> shape(axes);
     std::vector<std::int64_t> strides(axes);
@@ -188,8 +220,9 @@ class Output {
     }
     T* values = values_.release();
     const nb::capsule owner(values, [](void* memory) noexcept { delete[] static_cast<T*>(memory); });
-    return nb::cast(nb::ndarray<nb::numpy, T>(values, axes, shape.data(), owner, strides.data()),
-                    nb::rv_policy::reference);
+    return NumpyArray<T>(
+        nb::cast(nb::ndarray<nb::numpy, T>(values, axes, shape.data(), owner, strides.data()),
+                 nb::rv_policy::reference));
   }
 
  private:
@@ -201,7 +234,7 @@ class Output {
 
 /// Array of this shape, or flat if none is given.
 template <class T>
-nb::object to_numpy(std::span<const T> values, Shape shape = {}, Order order = Order::C) {
+NumpyArray<T> to_numpy(std::span<const T> values, Shape shape = {}, Order order = Order::C) {
   if (shape.empty()) shape = {static_cast<std::int64_t>(values.size())};
   Output<T> output(std::move(shape), order);
   std::copy(values.begin(), values.end(), output.data());
@@ -209,15 +242,42 @@ nb::object to_numpy(std::span<const T> values, Shape shape = {}, Order order = O
 }
 
 template <class T>
-nb::object to_numpy(const std::vector<T>& values, Shape shape = {}, Order order = Order::C) {
+NumpyArray<T> to_numpy(const std::vector<T>& values, Shape shape = {}, Order order = Order::C) {
   return to_numpy(std::span<const T>(values), std::move(shape), order);
 }
 
-inline nb::object to_numpy(Vec3 v) { return to_numpy(std::vector<double>{v.x, v.y, v.z}); }
+inline NumpyArray<double> to_numpy(Vec3 v) { return to_numpy(std::vector<double>{v.x, v.y, v.z}); }
+
+/// The numbers of an array as one row of columns per element, without a copy: writing to either changes both. NumPy on
+/// the host, DLPack on a device.
+template <class T>
+nb::object view_of(const Array<T>& array, Index rows) {
+  constexpr std::size_t columns = sizeof(T) / sizeof(double);
+  const nb::capsule owner(new Array<T>(array), [](void* view) noexcept { delete static_cast<Array<T>*>(view); });
+  const std::size_t shape[] = {static_cast<std::size_t>(rows), columns};
+  auto* numbers = reinterpret_cast<double*>(array.data());
+  constexpr std::size_t axes = columns == 1 ? 1 : 2;
+  if constexpr (runs_on_host)
+    return nb::cast(nb::ndarray<nb::numpy, double>(numbers, axes, shape, owner), nb::rv_policy::reference);
+  else
+    return nb::cast(nb::ndarray<double>(numbers, axes, shape, owner, nullptr, nb::dtype<double>(), nb::device::cuda::value),
+                    nb::rv_policy::reference);
+}
+
+/// Its first rows elements, copied.
+template <class T>
+nb::object to_numpy(const Array<T>& array, Index rows) {
+  constexpr std::int64_t columns = sizeof(T) / sizeof(double);
+  Output<double> output(columns == 1 ? Shape{rows} : Shape{rows, columns});
+  const Kokkos::View<T*, Kokkos::HostSpace, Kokkos::MemoryUnmanaged> host(reinterpret_cast<T*>(output.data()),
+                                                                          static_cast<std::size_t>(rows));
+  Kokkos::deep_copy(host, Kokkos::subview(array, std::make_pair(Index{0}, rows)));
+  return output.release();
+}
 
 /// Cells of a field without its ghosts: shape (nx, ny, nz), Fortran order.
 template <class T>
-nb::object to_numpy(const Field<T>& field) {
+NumpyArray<T> to_numpy(const Field<T>& field) {
   const Int3 n = field.layout().cells;
   Output<T> output({n[0], n[1], n[2]}, Order::Fortran);
   copy_to_host(field, output.data());

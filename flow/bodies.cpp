@@ -1,0 +1,186 @@
+#include "flow/bodies.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.hpp"
+
+namespace peclet::flow {
+namespace {
+
+Period period_of(const Grid& grid, const Periodicity& periodic) {
+  Period period;
+  for (int a = 0; a < 3; ++a) {
+    period.length[a] = grid.extent(a);
+    period.axis[a] = periodic.axis[a];
+  }
+  return period;
+}
+
+/// World-space bounds of a posed local box, relative to the translation.
+void rotated_bounds(const Body& body, Vec3& low, Vec3& high) {
+  low = {far_away, far_away, far_away};
+  high = -low;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3 local{corner & 1 ? body.local_high.x : body.local_low.x,
+                     corner & 2 ? body.local_high.y : body.local_low.y,
+                     corner & 4 ? body.local_high.z : body.local_low.z};
+    const Vec3 arm = body.pose.scale * rotate(body.pose.rotation, local);
+    for (int a = 0; a < 3; ++a) {
+      low[a] = std::min(low[a], arm[a]);
+      high[a] = std::max(high[a], arm[a]);
+    }
+  }
+}
+
+bool is_at_rest(const Twist& twist) {
+  return dot(twist.linear, twist.linear) == 0 && dot(twist.angular, twist.angular) == 0;
+}
+
+}  // namespace
+
+Bodies::Bodies(const Scene& scene, const Grid& grid, bool periodic_images, const Periodicity& domain)
+    : grid_(grid), domain_(domain) {
+  std::vector<int> roots;
+  for (const SceneInstance& instance : scene.instances()) {
+    const auto found = std::find(roots.begin(), roots.end(), instance.root);
+    Body body;
+    body.slot = static_cast<int>(found - roots.begin());
+    if (found == roots.end()) roots.push_back(instance.root);
+    body.pose = instance.pose;
+    body.twist = instance.twist;
+    body.center = instance.center_pinned ? instance.center : instance.pose.translation;
+    const Scene::Bounds bounds = scene.bounds(instance.root);
+    body.local_low = bounds.low;
+    body.local_high = bounds.high;
+    body.dynamic = !is_at_rest(instance.twist);
+    bodies_.push_back(body);
+    pinned_.push_back(instance.center_pinned);
+  }
+  geometry_.program = SceneProgram(scene, roots);
+  geometry_.box = period_of(grid, domain);
+  geometry_.images = geometry_.box;
+  for (int a = 0; a < 3; ++a) geometry_.images.axis[a] = geometry_.images.axis[a] && periodic_images;
+  for (Body& body : bodies_) {
+    Vec3 low, high;
+    rotated_bounds(body, low, high);
+    for (int a = 0; a < 3; ++a) {
+      // a band around the surface must see the true distance through the nearest image alone
+      const Real reach = std::max(-low[a], high[a]) + 4 * grid.spacing[a];
+      if (geometry_.images.axis[a] && reach > 0.5 * grid.extent(a)) body.wide = true;
+    }
+  }
+  geometry_.bodies = Array<Body>("flow::bodies", bodies_.size());
+}
+
+bool Bodies::moves(int b) const { return !is_at_rest((*this)[b].twist); }
+
+bool Bodies::any_moves() const {
+  for (int b = 0; b < count(); ++b)
+    if (moves(b)) return true;
+  return false;
+}
+
+void Bodies::set_pose(int b, Vec3 translation, Quaternion rotation) {
+  const auto n = static_cast<std::size_t>(b);
+  bodies_[n].pose.translation = translation;
+  bodies_[n].pose.rotation = normalized(rotation);
+  if (!pinned_[n]) bodies_[n].center = translation;
+  stale_ = true;
+}
+
+void Bodies::set_twist(int b, Twist twist) {
+  bodies_[static_cast<std::size_t>(b)].twist = twist;
+  stale_ = true;
+}
+
+void Bodies::pin_center(int b, Vec3 center) {
+  bodies_[static_cast<std::size_t>(b)].center = center;
+  pinned_[static_cast<std::size_t>(b)] = true;
+  stale_ = true;
+}
+
+void Bodies::set_dynamic(int b) {
+  bodies_[static_cast<std::size_t>(b)].dynamic = true;
+  stale_ = true;
+}
+
+const BodyGeometry& Bodies::geometry() {
+  if (stale_) {
+    const Kokkos::View<const Body*, Kokkos::HostSpace, Kokkos::MemoryTraits<Kokkos::Unmanaged>> host(
+        bodies_.data(), bodies_.size());
+    Kokkos::deep_copy(geometry_.bodies, host);
+    stale_ = false;
+  }
+  return geometry_;
+}
+
+Box Bodies::region(int b, int margin) const {
+  const Body& body = (*this)[b];
+  Box region;
+  if (body.pose.scale == 0) return region;
+  Vec3 low, high;
+  rotated_bounds(body, low, high);
+  const Vec3 start = body.pose.translation - Vec3{grid_.origin[0], grid_.origin[1], grid_.origin[2]};
+  for (int a = 0; a < 3; ++a) {
+    const Real h = grid_.spacing[a];
+    const int n = grid_.cells[a];
+    const Real first = std::floor((start[a] + low[a]) / h) - margin;
+    const Real last = std::ceil((start[a] + high[a]) / h) + margin;
+    if (geometry_.images.axis[a]) {
+      if (last - first >= n) {
+        region.low[a] = 0;
+        region.high[a] = n;
+      } else {
+        const Real shift = n * std::floor(first / n);
+        region.low[a] = static_cast<int>(first - shift);
+        region.high[a] = static_cast<int>(last - shift);
+      }
+    } else {
+      region.low[a] = static_cast<int>(std::clamp(first, 0.0, static_cast<Real>(n)));
+      region.high[a] = static_cast<int>(std::clamp(last, 0.0, static_cast<Real>(n)));
+    }
+  }
+  if (region.extent(0) <= 0 || region.extent(1) <= 0 || region.extent(2) <= 0) return Box{};
+  return region;
+}
+
+void sample_all_bodies(const Grid& grid, const BodyGeometry& geometry, int count, const Field<Real>& samples,
+                       const Field<Real>& distance, const Field<int>& owner) {
+  const Field<Real> result = distance, given = samples;
+  const Field<int> nearest = owner;
+  const BodyGeometry bodies = geometry;
+  const bool sampled = samples.is_allocated();
+  for_each_cell(
+      "flow::sample_all_bodies", RowRanges(grid.cells), KOKKOS_LAMBDA(int i, int j, int k) {
+        Real smallest = sampled ? given(i, j, k) : far_away;
+        int body = sampled ? sampled_solid : no_owner;
+        for (int b = 0; b < count; ++b) {
+          const Real d = bodies.distance(b, grid.cell_center(i, j, k));
+          if (d >= smallest) continue;
+          smallest = d;
+          body = b;
+        }
+        result(i, j, k) = smallest;
+        nearest(i, j, k) = body;
+      });
+}
+
+Index count_image_overlap(const Grid& grid, const BodyGeometry& geometry, int count) {
+  const BodyGeometry bodies = geometry;
+  return static_cast<Index>(sum_cells(
+      "flow::count_image_overlap", RowRanges(grid.cells), KOKKOS_LAMBDA(int i, int j, int k) {
+        const Vec3 x = grid.cell_center(i, j, k);
+        bool solid = false, unshifted = false;
+        for (int b = 0; b < count; ++b) {
+          const Body& body = bodies.bodies(b);
+          solid = solid || bodies.distance(b, x) < 0;
+          // a body that fits into the box has no image of its own to collide with
+          const Real alone = body.wide ? bodies.program.distance(body.slot, body.pose, x) : bodies.distance(b, x);
+          unshifted = unshifted || alone < 0;
+        }
+        return solid && !unshifted ? 1.0 : 0.0;
+      }));
+}
+
+}  // namespace peclet::flow

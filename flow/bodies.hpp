@@ -1,0 +1,131 @@
+#pragma once
+// The solid bodies that the fluid sees: signed distance of every instance of a scene, with its periodic
+// images, and the rigid motion of its surface.
+#include <vector>
+
+#include "core/halo.hpp"
+#include "core/rigid_body.hpp"
+#include "core/scene.hpp"
+#include "core/scene_program.hpp"
+
+namespace peclet::flow {
+
+/// One instance as kernels need it. Lengths in scene units, velocities per unit time.
+struct Body {
+  int slot = 0;
+  Pose pose;
+  Twist twist;
+  Vec3 center;                  // of rotation
+  Vec3 local_low, local_high;   // bounds in the frame of the root
+  bool wide = false;            // reaches beyond half a period: images other than the nearest matter
+  bool dynamic = false;         // re-sampled at every geometry update
+
+  /// Velocity of the rigid motion at x: U + Omega x (x - center), nearest image of the arm.
+  KOKKOS_INLINE_FUNCTION Vec3 velocity_from_arm(Vec3 arm) const { return twist.linear + cross(twist.angular, arm); }
+};
+
+struct Period {
+  Vec3 length;         // of the box
+  bool axis[3] = {false, false, false};
+
+  /// Nearest periodic image of a difference of two positions.
+  KOKKOS_INLINE_FUNCTION Vec3 nearest(Vec3 r) const {
+    for (int a = 0; a < 3; ++a)
+      if (axis[a]) r[a] -= length[a] * Kokkos::floor(r[a] / length[a] + 0.5);
+    return r;
+  }
+};
+
+/// Owners of cells: instances count from 0.
+inline constexpr int no_owner = -1;
+inline constexpr int sampled_solid = -2;  // the solid given as an array of distances
+
+/// Distance to bodies, callable in kernels.
+struct BodyGeometry {
+  SceneProgram program;
+  Array<Body> bodies;
+  Period images;  // of the scene: all false when the scene is not periodic
+  Period box;     // of the domain: arms of rotation use it
+
+  /// Signed distance of body b (negative inside), smallest over its periodic images.
+  KOKKOS_INLINE_FUNCTION Real distance(int b, Vec3 x) const {
+    const Body& body = bodies(b);
+    if (body.pose.scale == 0) return far_away;
+    const Vec3 near = body.pose.translation + images.nearest(x - body.pose.translation);
+    Real d = program.distance(body.slot, body.pose, near);
+    if (body.wide) d = distance_with_images(body, near, d);
+    return d;
+  }
+
+  /// Velocity of the surface of body b at x.
+  KOKKOS_INLINE_FUNCTION Vec3 velocity(int b, Vec3 x) const {
+    const Body& body = bodies(b);
+    return body.velocity_from_arm(box.nearest(x - body.center));
+  }
+
+  KOKKOS_INLINE_FUNCTION Real distance_with_images(const Body& body, Vec3 x, Real nearest_image) const {
+    Real d = nearest_image;
+    for (int n = 0; n < 27; ++n) {
+      const int s[3] = {n % 3 - 1, (n / 3) % 3 - 1, n / 9 - 1};
+      if (n == 13 || (s[0] && !images.axis[0]) || (s[1] && !images.axis[1]) || (s[2] && !images.axis[2])) continue;
+      const Vec3 image = x + Vec3{s[0] * images.length.x, s[1] * images.length.y, s[2] * images.length.z};
+      const Vec3 local = to_local(body.pose, image);
+      const Real lower = body.pose.scale * distance_to_bounds(body, local);
+      if (lower > 0 && lower >= d) continue;  // the image is at least that far away
+      const Real candidate = body.pose.scale * program.distance(body.slot, local);
+      d = candidate < d ? candidate : d;
+    }
+    return d;
+  }
+
+  KOKKOS_INLINE_FUNCTION static Real distance_to_bounds(const Body& body, Vec3 local) {
+    Vec3 outside;
+    for (int a = 0; a < 3; ++a) {
+      const Real below = body.local_low[a] - local[a], above = local[a] - body.local_high[a];
+      const Real gap = below > above ? below : above;
+      outside[a] = gap > 0 ? gap : 0;
+    }
+    return norm(outside);
+  }
+};
+
+/// Host side: owns the instances, moves them, and hands a BodyGeometry to kernels.
+class Bodies {
+ public:
+  Bodies() = default;
+  Bodies(const Scene& scene, const Grid& grid, bool periodic_images, const Periodicity& domain);
+
+  int count() const { return static_cast<int>(bodies_.size()); }
+  const Body& operator[](int b) const { return bodies_[static_cast<std::size_t>(b)]; }
+  bool center_pinned(int b) const { return pinned_[static_cast<std::size_t>(b)]; }
+  bool moves(int b) const;
+  bool any_moves() const;
+
+  void set_pose(int b, Vec3 translation, Quaternion rotation);
+  void set_twist(int b, Twist twist);
+  void pin_center(int b, Vec3 center);
+  void set_dynamic(int b);
+
+  /// Device copy of the present state.
+  const BodyGeometry& geometry();
+  /// Cells whose geometry body b can influence, grown by margin cells; unwrapped along periodic axes
+  /// (low may be negative) and clipped along the others. Empty when the body vanished.
+  Box region(int b, int margin) const;
+
+ private:
+  Grid grid_;
+  Periodicity domain_;
+  BodyGeometry geometry_;
+  std::vector<Body> bodies_;
+  std::vector<bool> pinned_;
+  bool stale_ = true;
+};
+
+/// Signed distance and nearest body of every cell, from all bodies and, where allocated, the samples.
+void sample_all_bodies(const Grid& grid, const BodyGeometry& geometry, int count, const Field<Real>& samples,
+                       const Field<Real>& distance, const Field<int>& owner);
+
+/// Cells outside every unshifted body that a shifted periodic image of one makes solid.
+Index count_image_overlap(const Grid& grid, const BodyGeometry& geometry, int count);
+
+}  // namespace peclet::flow

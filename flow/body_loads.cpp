@@ -1,0 +1,173 @@
+#include "flow/body_loads.hpp"
+
+namespace peclet::flow {
+namespace {
+
+/// Bins of one body.
+enum Bin : int { Viscous = 0, Pressure = 3, Advective = 6, Torque = 9, WettedArea = 12, bins_per_body = 13 };
+
+/// Adds a force along axis c that acts at x; walls without an instance share the last set of bins.
+struct LoadAdder {
+  Bins bins;
+  BodyGeometry geometry;
+  int bodies;
+
+  KOKKOS_INLINE_FUNCTION int first_bin(int owner) const {
+    return bins_per_body * (owner >= 0 ? owner : bodies);
+  }
+  KOKKOS_INLINE_FUNCTION void add(int chunk, int owner, Bin kind, int c, Real force, Vec3 x) const {
+    const int bin = first_bin(owner);
+    bins.add(chunk, bin + kind + c, force);
+    if (owner < 0) return;
+    const Vec3 arm = geometry.box.nearest(x - geometry.bodies(owner).center);
+    Vec3 along;
+    along[c] = force;
+    const Vec3 torque = cross(arm, along);
+    for (int a = 0; a < 3; ++a) bins.add(chunk, bin + Torque + a, torque[a]);
+  }
+};
+
+template <class Scheme>
+struct AdvectiveTraction {
+  /// Momentum flux out of the control volume of face p in direction d, per volume.
+  KOKKOS_INLINE_FUNCTION static Real outflow(const FaceVector<Real>& v, int c, int d, Index p, Real inverse_spacing) {
+    const Layout& layout = v.x.layout();
+    const Index own = layout.stride(c), step = layout.stride(d / 2);
+    return d % 2 ? inverse_spacing * momentum_flux_low<Scheme>(v, c, d / 2, p + step, own, step)
+                 : -inverse_spacing * momentum_flux_low<Scheme>(v, c, d / 2, p, own, step);
+  }
+  KOKKOS_INLINE_FUNCTION static Real divergence_part(const FaceVector<Real>& v, int c, Index p, const Real3& inverse_spacing) {
+    return v[c][p] * carrier_divergence(v, c, p, inverse_spacing);
+  }
+};
+
+template <>
+struct AdvectiveTraction<NoAdvection> {
+  KOKKOS_INLINE_FUNCTION static Real outflow(const FaceVector<Real>&, int, int, Index, Real) { return 0; }
+  KOKKOS_INLINE_FUNCTION static Real divergence_part(const FaceVector<Real>&, int, Index, const Real3&) { return 0; }
+};
+
+template <class Scheme>
+void add_wall_tractions(int c, const MomentumTerms& terms, const SolidSampler& solid, const WallRows& rows,
+                        const Field<Real>& correction, const LoadAdder& adder, const ScatterSum& sums) {
+  const MomentumTerms t = terms;
+  const SolidSampler sampler = solid;
+  const WallRows w = rows;
+  const Field<Real> e = correction;
+  const LoadAdder loads = adder;
+  const Real volume = terms.grid.cell_volume();
+  const Real3 inverse{1 / terms.grid.spacing[0], 1 / terms.grid.spacing[1], 1 / terms.grid.spacing[2]};
+  for_each_scattered(
+      "flow::add_wall_tractions", rows.count, sums, KOKKOS_LAMBDA(Index row, int chunk) {
+        if (w.superseded(row)) return;
+        const Layout& layout = e.layout();
+        const Index p = w.face(row);
+        const Int3 cell = cell_of(layout, p);
+        const Vec3 x = t.grid.face_center(c, cell[0], cell[1], cell[2]);
+        const Field<Real>& v = t.extrapolated[c];
+        const Real here = v[p] + t.implicit_weight * e[p];
+        for (int d = 0; d < WallRows::directions; ++d) {
+          if (!w.is_wall(row, d)) continue;
+          const int a = d / 2, owner = w.owner(row, d);
+          Vec3 wall = x;
+          wall[a] += (d % 2 ? 1 : -1) * t.grid.spacing[a] * w.wall_distance(row, d);
+          const Real wall_velocity = owner >= 0 ? sampler.geometry.velocity(owner, wall)[c] : 0.0;
+          Real laplacian = w.weight(row, d) * (wall_velocity - here);
+          if (!w.is_wall(row, d ^ 1)) {
+            const Index q = d % 2 ? p - layout.stride(a) : p + layout.stride(a);
+            laplacian += (w.weight(row, d ^ 1) - 1) * (v[q] + t.implicit_weight * e[q] - here);
+          }
+          const Real viscous = -t.density * t.kinematic_viscosity * volume * inverse[a] * inverse[a] * laplacian;
+          loads.add(chunk, owner, Viscous, c, viscous, x);
+          loads.add(chunk, owner, Advective, c,
+                    t.density * volume * AdvectiveTraction<Scheme>::outflow(t.extrapolated, c, d, p, inverse[a]), x);
+          loads.bins.add(chunk, loads.first_bin(owner) + WettedArea, 1.0);
+        }
+        loads.add(chunk, w.owner(row, 0), Advective, c,
+                  -t.density * volume * AdvectiveTraction<Scheme>::divergence_part(t.extrapolated, c, p, inverse), x);
+      });
+}
+
+void add_wall_pressure(int c, const SolidSampler& solid, const WallRows& rows, const Field<Real>& pressure,
+                       const LoadAdder& adder, const ScatterSum& sums) {
+  const WallRows w = rows;
+  const Field<Real> p = pressure;
+  const Grid grid = solid.grid;
+  const LoadAdder loads = adder;
+  const Real area = grid.cell_volume() / grid.spacing[c];
+  for_each_scattered(
+      "flow::add_wall_pressure", rows.count, sums, KOKKOS_LAMBDA(Index row, int chunk) {
+        if (w.superseded(row)) return;
+        const Index n = w.face(row);
+        const Int3 cell = cell_of(p.layout(), n);
+        const Vec3 high = grid.cell_center(cell[0], cell[1], cell[2]);
+        Vec3 low = high;
+        low[c] -= grid.spacing[c];
+        if (w.is_wall(row, 2 * c))
+          loads.add(chunk, w.owner(row, 2 * c), Pressure, c, -area * p[n - p.layout().stride(c)], low);
+        if (w.is_wall(row, 2 * c + 1)) loads.add(chunk, w.owner(row, 2 * c + 1), Pressure, c, area * p[n], high);
+      });
+}
+
+template <class Scheme>
+void add_both(int c, const MomentumTerms& terms, const SolidSampler& solid, const WallRows& fixed_rows,
+              const WallRows& moving_rows, const Field<Real>& correction, const LoadAdder& adder, const ScatterSum& sums) {
+  add_wall_tractions<Scheme>(c, terms, solid, fixed_rows, correction, adder, sums);
+  add_wall_tractions<Scheme>(c, terms, solid, moving_rows, correction, adder, sums);
+}
+
+Vec3 triple(const std::vector<Real>& sums, std::size_t first) {
+  return {sums[first], sums[first + 1], sums[first + 2]};
+}
+
+}  // namespace
+
+void LoadCollector::start(int number_of_bodies) {
+  bodies_ = number_of_bodies;
+  sums_.reset(bins_per_body * (number_of_bodies + 1));
+  left_over_ = {};
+}
+
+void LoadCollector::add_momentum(int c, const MomentumTerms& terms, const SolidSampler& solid,
+                                 const WallRows& fixed_rows, const WallRows& moving_rows, const Field<Real>& correction,
+                                 Real residual_sum) {
+  const LoadAdder adder{sums_.bins(), solid.geometry, bodies_};
+  left_over_[c] = residual_sum * terms.density * terms.grid.cell_volume() / terms.time_step;
+  switch (terms.scheme) {
+    case AdvectionScheme::None:
+      return add_both<NoAdvection>(c, terms, solid, fixed_rows, moving_rows, correction, adder, sums_);
+    case AdvectionScheme::SecondUpwind:
+      return add_both<SecondUpwindScheme>(c, terms, solid, fixed_rows, moving_rows, correction, adder, sums_);
+    case AdvectionScheme::Koren:
+      return add_both<KorenScheme>(c, terms, solid, fixed_rows, moving_rows, correction, adder, sums_);
+    case AdvectionScheme::Central:
+      return add_both<CentralScheme>(c, terms, solid, fixed_rows, moving_rows, correction, adder, sums_);
+  }
+}
+
+void LoadCollector::add_pressure(int c, const SolidSampler& solid, const WallRows& fixed_rows,
+                                 const WallRows& moving_rows, const Field<Real>& pressure) {
+  const LoadAdder adder{sums_.bins(), solid.geometry, bodies_};
+  add_wall_pressure(c, solid, fixed_rows, pressure, adder, sums_);
+  add_wall_pressure(c, solid, moving_rows, pressure, adder, sums_);
+}
+
+std::vector<BodyLoad> LoadCollector::finish(const std::vector<Vec3>& spin_resistance) {
+  const std::vector<Real> sums = sums_.totals();
+  Real wetted = 0;
+  for (std::size_t b = 0; b <= static_cast<std::size_t>(bodies_); ++b) wetted += sums[b * bins_per_body + WettedArea];
+  std::vector<BodyLoad> loads(static_cast<std::size_t>(bodies_));
+  for (std::size_t b = 0; b < loads.size(); ++b) {
+    const std::size_t first = b * bins_per_body;
+    BodyLoad& load = loads[b];
+    load.viscous_force = triple(sums, first + Viscous);
+    if (wetted > 0) load.viscous_force += (sums[first + WettedArea] / wetted) * left_over_;
+    load.pressure_force = triple(sums, first + Pressure);
+    load.advective_force = triple(sums, first + Advective);
+    load.force = load.viscous_force + load.pressure_force + load.advective_force;
+    load.torque = triple(sums, first + Torque) - spin_resistance[b];
+  }
+  return loads;
+}
+
+}  // namespace peclet::flow

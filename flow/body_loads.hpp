@@ -1,0 +1,43 @@
+#pragma once
+// Force and torque of the fluid on every body: the momentum that the discrete equations of the fluid lost to
+// it. Each term that links two fluid points cancels in the sum over the fluid; what remains is, per wall row,
+//   viscous    the wall part of nu L (v + theta e),
+//   pressure   (p at the wall cell) on faces whose neighbour along their own axis is closed,
+//   advection  the momentum flux through control-volume faces towards closed points, less v_c div(v),
+// and is given to the body that owns the wall. So  sum of forces = f N - rho / dt sum (u_new - u)  over the N
+// fluid points, to rounding: the momentum that the iterative solver left over is shared out by wetted area.
+//
+// Torques are moments of the same terms about the centre of rotation, plus the transposed part of the viscous
+// stress, which on a rigid no-slip wall integrates to -2 mu V Omega for a body of volume V.
+#include <vector>
+
+#include "core/scatter_sum.hpp"
+#include "flow/momentum.hpp"
+
+namespace peclet::flow {
+
+struct BodyLoad {
+  Vec3 force, torque;
+  Vec3 pressure_force, viscous_force, advective_force;  // sum to force
+};
+
+/// Collects the loads of one step: viscous and advective parts component by component, then the pressure.
+class LoadCollector {
+ public:
+  void start(int number_of_bodies);
+  /// correction: e of component c, ghosts filled. residual_sum: what the viscous solve left over.
+  void add_momentum(int c, const MomentumTerms& terms, const SolidSampler& solid, const WallRows& fixed_rows,
+                    const WallRows& moving_rows, const Field<Real>& correction, Real residual_sum);
+  /// pressure: the one whose gradient acted in this step, ghosts filled.
+  void add_pressure(int c, const SolidSampler& solid, const WallRows& fixed_rows, const WallRows& moving_rows,
+                    const Field<Real>& pressure);
+  /// One load per body. spin_resistance[b] = 2 mu V Omega of body b.
+  std::vector<BodyLoad> finish(const std::vector<Vec3>& spin_resistance);
+
+ private:
+  ScatterSum sums_;
+  int bodies_ = 0;
+  Vec3 left_over_;
+};
+
+}  // namespace peclet::flow

@@ -1,0 +1,57 @@
+#pragma once
+// From signed distances to the discrete geometry: open fractions, wall rows, and what moving bodies impose.
+// Fixed bodies are sampled once; an update touches only the cells around moving ones, where they were and
+// where they are.
+#include "flow/bodies.hpp"
+#include "flow/moving_walls.hpp"
+#include "flow/region_list.hpp"
+#include "flow/solid_sampler.hpp"
+#include "flow/wall_rows.hpp"
+
+namespace peclet::flow {
+
+class ImmersedBoundary {
+ public:
+  ImmersedBoundary(const Grid& grid, const Periodicity& periodic);
+
+  /// Sample everything: fixed bodies and, if allocated, the solid given as distances at cell centres.
+  void build(Bodies& bodies, const Field<Real>& samples);
+  /// Re-sample the moving bodies. Before the geometry changes, the pressure of closed cells beside open ones
+  /// is extrapolated into them, so that freshly uncovered cells start from it.
+  void update(Bodies& bodies, const Field<Real>& pressure);
+  /// Only the velocities of the bodies changed.
+  void refresh_velocity(Bodies& bodies);
+
+  const FaceVector<OpenFraction>& open() const { return open_; }
+  const WallRows& fixed_rows(int c) const { return fixed_rows_[c]; }
+  const WallRows& moving_rows(int c) const { return moving_rows_[c]; }
+  const BodyFaces& body_faces(int c) const { return body_faces_[c]; }
+  const CutCells& cut_cells() const { return cut_cells_; }
+  const SolidSampler& solid() const { return solid_; }
+  /// Rows of cells that are not solid for good.
+  const RowRanges& rows() const { return rows_; }
+  /// Cells whose faces changed in the last update.
+  const std::vector<Box>& changed() const { return changed_; }
+  std::size_t bytes() const;
+
+ private:
+  void sample_fixed(Bodies& bodies);
+  void sample_moving(const RegionList& regions);
+
+  Grid grid_;
+  Periodicity periodic_;
+  SolidSampler solid_;
+  FaceVector<OpenFraction> open_, fixed_open_;
+  Field<Real> fixed_sdf_;
+  Field<int> fixed_owner_;
+  Field<std::uint8_t> in_region_;
+  RowRanges rows_;
+  RegionList regions_;
+  std::vector<Box> changed_;
+  Array<Index> scratch_;
+  WallRows fixed_rows_[3], moving_rows_[3];
+  BodyFaces body_faces_[3];
+  CutCells cut_cells_;
+};
+
+}  // namespace peclet::flow

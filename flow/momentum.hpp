@@ -1,0 +1,61 @@
+#pragma once
+// The momentum predictor. With r = dt / dt_old, extrapolated velocity v = u + r/2 (u - u_old) (at the middle
+// of the step) and correction e, the predicted velocity is u* = u + r (u - u_old) + e, where
+//   (u* - u) / dt = -A(v) - grad p / rho + f / rho + nu L (v + theta e).
+// v + theta e is second order in time at the middle of the step for every theta; stiff modes are damped to 1/3
+// per step by theta = 9/16 [AscherRuuthWetton1995, modified Crank-Nicolson]. The first step, which has no past, is
+// a step of Euler's method: r = 0, theta = 1.
+#include "core/field.hpp"
+#include "flow/advection_schemes.hpp"
+#include "flow/settings.hpp"
+#include "flow/wall_rows.hpp"
+
+namespace peclet::flow {
+
+/// Everything that the predictor of one component reads.
+struct MomentumTerms {
+  Grid grid;
+  FaceVector<Real> extrapolated;  // v, ghosts filled; wall velocity inside bodies
+  FaceVector<Real> velocity;      // u
+  FaceVector<Real> previous;      // u_old
+  Field<Real> pressure;           // ghosts filled
+  Real time_step = 1, density = 1, kinematic_viscosity = 0;
+  Real step_ratio = 0;            // r
+  Real implicit_weight = 1;       // theta
+  Real3 acceleration{0, 0, 0};    // f / rho
+  AdvectionScheme scheme = AdvectionScheme::None;
+};
+
+/// extrapolated = u + r/2 (u - u_old).
+void extrapolate_velocity(const RowRanges& rows, const FaceVector<Real>& velocity, const FaceVector<Real>& previous,
+                          Real step_ratio, const FaceVector<Real>& extrapolated);
+
+/// residual = u + dt (-A(v) - grad p / rho + f / rho + nu L v) - (u + r (u - u_old)): what e must balance.
+void compute_momentum_residual(int c, const MomentumTerms& terms, const RowRanges& rows, const WallRows& fixed_rows,
+                               const WallRows& moving_rows, const Field<Real>& residual);
+
+
+/// No flux: Stokes flow.
+struct NoAdvection {};
+
+/// Mass flux through the low control-volume face of component c along axis a, times the carried velocity.
+template <class Scheme>
+KOKKOS_INLINE_FUNCTION Real momentum_flux_low(const FaceVector<Real>& v, int c, int a, Index p, Index own, Index step) {
+  const Field<Real>& q = v[c];
+  const Real carrier = 0.5 * (v[a][p - own] + v[a][p]);
+  return carrier * carried_value<Scheme>(carrier, q[p - 2 * step], q[p - step], q[p], q[p + step]);
+}
+
+/// Divergence of the carrying velocity in the control volume of face p.
+KOKKOS_INLINE_FUNCTION Real carrier_divergence(const FaceVector<Real>& v, int c, Index p, const Real3& inverse_spacing) {
+  const Layout& layout = v.x.layout();
+  const Index own = layout.stride(c);
+  Real divergence = 0;
+  for (int a = 0; a < 3; ++a) {
+    const Index high = p + layout.stride(a);
+    divergence += inverse_spacing[a] * 0.5 * (v[a][high - own] + v[a][high] - v[a][p - own] - v[a][p]);
+  }
+  return divergence;
+}
+
+}  // namespace peclet::flow

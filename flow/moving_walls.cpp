@@ -1,0 +1,148 @@
+#include "flow/moving_walls.hpp"
+
+#include "flow/wall_rows.hpp"
+
+namespace peclet::flow {
+
+void BodyFaces::reserve(Index capacity) {
+  const auto n = static_cast<std::size_t>(capacity);
+  if (face.extent(0) >= n) return;
+  face = Array<Index>("flow::body_faces.face", n + n / 4);
+  owner = Array<int>("flow::body_faces.owner", n + n / 4);
+  velocity = Array<Real>("flow::body_faces.velocity", n + n / 4);
+}
+
+void CutCells::reserve(Index capacity) {
+  const auto n = static_cast<std::size_t>(capacity);
+  if (cell.extent(0) >= n) return;
+  cell = Array<Index>("flow::cut_cells.cell", n + n / 4);
+  wall_flux = Array<Real>("flow::cut_cells.wall_flux", n + n / 4);
+}
+
+namespace {
+
+KOKKOS_INLINE_FUNCTION int nearest_owner(const SolidSampler& solid, int c, Index p, Vec3 x) {
+  const int low = solid.owner[p - solid.owner.layout().stride(c)], high = solid.owner[p];
+  return low == high || solid.distance(low, x) < solid.distance(high, x) ? low : high;
+}
+
+KOKKOS_INLINE_FUNCTION bool is_cut(const FaceVector<OpenFraction>& open, Index n) {
+  bool any_open = false, any_closed = false;
+  for (int a = 0; a < 3; ++a) {
+    const OpenFraction low = open[a][n], high = open[a][n + open.x.layout().stride(a)];
+    any_open = any_open || low > 0 || high > 0;
+    any_closed = any_closed || low < fully_open || high < fully_open;
+  }
+  return any_open && any_closed;
+}
+
+/// Integral of the wall velocity over the closed part of the low face of cell (i, j, k) along axis, per
+/// face area. A face whose centre is solid counts as closed.
+KOKKOS_INLINE_FUNCTION Real swept_flux(const SolidSampler& solid, const FaceVector<OpenFraction>& open, int axis, int i,
+                                       int j, int k) {
+  const Index p = open.x.layout()(i, j, k);
+  const OpenFraction fraction = open[axis][p];
+  if (fraction == fully_open) return 0;
+  Vec3 x = solid.grid.face_center(axis, i, j, k);
+  const int body = nearest_owner(solid, axis, p, x);
+  if (body < 0) return 0;
+  if (fraction > 0) {
+    const FaceOpening face = face_opening(solid, axis, i, j, k, body, body);
+    const int s = (axis + 1) % 3, t = (axis + 2) % 3;
+    x[s] += face.closed_s * solid.grid.spacing[s];
+    x[t] += face.closed_t * solid.grid.spacing[t];
+  }
+  return (1 - fraction * open_fraction_unit) * solid.geometry.velocity(body, x)[axis];
+}
+
+}  // namespace
+
+void build_body_faces(int c, const SolidSampler& solid, const FaceVector<OpenFraction>& open, const RegionList& regions,
+                      const Array<Index>& scratch, BodyFaces& faces) {
+  const RegionView region = regions.view();
+  const FaceVector<OpenFraction> fraction = open;
+  const Layout layout = open.x.layout();
+  const Index total = regions.number_of_cells();
+  const Index kept = enumerate(
+      "flow::build_body_faces.count", total, scratch, KOKKOS_LAMBDA(Index n) {
+        const RegionCell cell = region.cell(n);
+        return cell.unique && fraction[c][layout(cell.i, cell.j, cell.k)] == 0;
+      });
+  faces.count = kept;
+  faces.reserve(kept);
+  const BodyFaces target = faces;
+  const SolidSampler sampler = solid;
+  for_each(
+      "flow::build_body_faces", total, KOKKOS_LAMBDA(Index n) {
+        const Index row = scratch(n);
+        if ((n + 1 < total ? scratch(n + 1) : kept) == row) return;
+        const RegionCell cell = region.cell(n);
+        const Index p = layout(cell.i, cell.j, cell.k);
+        target.face(row) = p;
+        target.owner(row) = nearest_owner(sampler, c, p, sampler.grid.face_center(c, cell.i, cell.j, cell.k));
+      });
+}
+
+void build_cut_cells(const SolidSampler& solid, const FaceVector<OpenFraction>& open, const RegionList& regions,
+                     const Array<Index>& scratch, CutCells& cells) {
+  const RegionView region = regions.view();
+  const FaceVector<OpenFraction> fraction = open;
+  const Layout layout = open.x.layout();
+  const Index total = regions.number_of_cells();
+  const Index kept = enumerate(
+      "flow::build_cut_cells.count", total, scratch, KOKKOS_LAMBDA(Index n) {
+        const RegionCell cell = region.cell(n);
+        return cell.unique && is_cut(fraction, layout(cell.i, cell.j, cell.k));
+      });
+  cells.count = kept;
+  cells.reserve(kept);
+  const CutCells target = cells;
+  for_each(
+      "flow::build_cut_cells", total, KOKKOS_LAMBDA(Index n) {
+        const Index row = scratch(n);
+        if ((n + 1 < total ? scratch(n + 1) : kept) == row) return;
+        const RegionCell cell = region.cell(n);
+        target.cell(row) = layout(cell.i, cell.j, cell.k);
+      });
+}
+
+void refresh_body_faces(int c, const SolidSampler& solid, const BodyFaces& faces) {
+  const BodyFaces target = faces;
+  const SolidSampler sampler = solid;
+  const Layout layout = solid.sdf.layout();
+  for_each(
+      "flow::refresh_body_faces", faces.count, KOKKOS_LAMBDA(Index n) {
+        const int body = target.owner(n);
+        const Int3 cell = cell_of(layout, target.face(n));
+        const Vec3 x = sampler.grid.face_center(c, cell[0], cell[1], cell[2]);
+        target.velocity(n) = body < 0 ? 0.0 : sampler.geometry.velocity(body, x)[c];
+      });
+}
+
+void refresh_cut_cells(const SolidSampler& solid, const FaceVector<OpenFraction>& open, const CutCells& cells) {
+  const CutCells target = cells;
+  const SolidSampler sampler = solid;
+  const FaceVector<OpenFraction> fraction = open;
+  for_each(
+      "flow::refresh_cut_cells", cells.count, KOKKOS_LAMBDA(Index n) {
+        const Int3 cell = cell_of(fraction.x.layout(), target.cell(n));
+        const int i = cell[0], j = cell[1], k = cell[2];
+        Real flux = 0;
+        for (int a = 0; a < 3; ++a) {
+          const Real high = swept_flux(sampler, fraction, a, i + (a == 0), j + (a == 1), k + (a == 2));
+          const Real low = swept_flux(sampler, fraction, a, i, j, k);
+          flux += (high - low) / sampler.grid.spacing[a];
+        }
+        target.wall_flux(n) = flux;
+      });
+}
+
+void impose_body_velocity(const BodyFaces& faces, const Field<Real>& velocity) {
+  const BodyFaces source = faces;
+  const Field<Real> u = velocity;
+  for_each(
+      "flow::impose_body_velocity", faces.count,
+      KOKKOS_LAMBDA(Index n) { u[source.face(n)] = source.velocity(n); });
+}
+
+}  // namespace peclet::flow

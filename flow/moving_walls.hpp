@@ -1,0 +1,44 @@
+#pragma once
+// What moving bodies impose on the grid: velocities of the faces inside them, and the volume that their
+// surfaces sweep out of cut cells.
+#include "core/field.hpp"
+#include "flow/open_fraction.hpp"
+#include "flow/region_list.hpp"
+#include "flow/solid_sampler.hpp"
+
+namespace peclet::flow {
+
+/// Closed faces of one component inside moving regions; they carry the velocity of their body.
+struct BodyFaces {
+  Index count = 0;
+  Array<Index> face;
+  Array<int> owner;
+  Array<Real> velocity;
+
+  void reserve(Index capacity);
+};
+
+/// Cells with open and closed faces in moving regions. The flux through a whole face is
+///   F = o u + integral of the wall velocity over its closed part,
+/// so that sums over cells telescope and rigid motion of any closed body is compatible with a closed box.
+struct CutCells {
+  Index count = 0;
+  Array<Index> cell;
+  Array<Real> wall_flux;  // outward flux of the closed parts of all six faces per cell volume
+
+  void reserve(Index capacity);
+};
+
+void build_body_faces(int c, const SolidSampler& solid, const FaceVector<OpenFraction>& open, const RegionList& regions,
+                      const Array<Index>& scratch, BodyFaces& faces);
+void build_cut_cells(const SolidSampler& solid, const FaceVector<OpenFraction>& open, const RegionList& regions,
+                     const Array<Index>& scratch, CutCells& cells);
+
+/// Recompute velocities and fluxes from the present motion of the bodies.
+void refresh_body_faces(int c, const SolidSampler& solid, const BodyFaces& faces);
+void refresh_cut_cells(const SolidSampler& solid, const FaceVector<OpenFraction>& open, const CutCells& cells);
+
+/// velocity[face] = velocity of the body there.
+void impose_body_velocity(const BodyFaces& faces, const Field<Real>& velocity);
+
+}  // namespace peclet::flow

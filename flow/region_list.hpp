@@ -1,0 +1,88 @@
+#pragma once
+// The boxes of cells around moving bodies, flattened so that one kernel visits every cell of every box
+// exactly once, although boxes overlap and wrap around periodic edges.
+#include <vector>
+
+#include "core/grid.hpp"
+#include "core/loop.hpp"
+
+namespace peclet::flow {
+
+/// One visited cell: indices inside the domain, and unwrapped ones that give positions near the body.
+struct RegionCell {
+  int i, j, k;
+  int region;  // which box
+  bool unique; // false where an earlier box visits the same cell
+};
+
+/// Device side of RegionList.
+struct RegionView {
+  Array<Box> boxes;            // unwrapped: low in [0, n), high may exceed n
+  Array<Index> first_cell;     // per box, plus the total
+  Array<int> body;             // per box
+  Array<int> first_neighbor;   // per box, plus the total
+  Array<int> neighbors;        // boxes that share cells with a box, itself included, ascending
+  Int3 cells;
+  int count = 0;
+
+  KOKKOS_INLINE_FUNCTION static int wrap(int i, int n) { return i >= n ? i - n : i; }
+
+  KOKKOS_INLINE_FUNCTION bool contains(int box, int i, int j, int k) const {
+    const Box& b = boxes(box);
+    const int p[3] = {i, j, k};
+    for (int a = 0; a < 3; ++a) {
+      const bool direct = p[a] >= b.low[a] && p[a] < b.high[a];
+      const bool wrapped = p[a] + cells[a] >= b.low[a] && p[a] + cells[a] < b.high[a];
+      if (!direct && !wrapped) return false;
+    }
+    return true;
+  }
+
+  /// Cell n of the flattened list.
+  KOKKOS_INLINE_FUNCTION RegionCell cell(Index n) const {
+    int low = 0, high = count - 1;
+    while (low < high) {
+      const int middle = (low + high + 1) / 2;
+      if (first_cell(middle) <= n)
+        low = middle;
+      else
+        high = middle - 1;
+    }
+    const Box& box = boxes(low);
+    Index rest = n - first_cell(low);
+    const Index nx = box.extent(0), ny = box.extent(1);
+    RegionCell cell;
+    cell.i = wrap(box.low[0] + static_cast<int>(rest % nx), cells[0]);
+    rest /= nx;
+    cell.j = wrap(box.low[1] + static_cast<int>(rest % ny), cells[1]);
+    cell.k = wrap(box.low[2] + static_cast<int>(rest / ny), cells[2]);
+    cell.region = low;
+    cell.unique = true;
+    for (int m = first_neighbor(low); m < first_neighbor(low + 1) && neighbors(m) < low; ++m)
+      if (contains(neighbors(m), cell.i, cell.j, cell.k)) cell.unique = false;
+    return cell;
+  }
+};
+
+/// Host side: built from one box per body, reuses its device arrays.
+class RegionList {
+ public:
+  RegionList() = default;
+  explicit RegionList(const Int3& cells) { view_.cells = cells; }
+
+  void assign(const std::vector<Box>& boxes, const std::vector<int>& bodies);
+  void clear() { assign({}, {}); }
+
+  const RegionView& view() const { return view_; }
+  Index number_of_cells() const { return total_; }
+  bool empty() const { return total_ == 0; }
+  /// The boxes cut at the periodic edges: all inside the domain.
+  std::vector<Box> boxes_inside() const;
+
+ private:
+  RegionView view_;
+  std::vector<Box> boxes_;
+  Index total_ = 0;
+};
+
+}  // namespace peclet::flow

@@ -1,0 +1,148 @@
+#pragma once
+// Signed distance of the solid near a cell, and what follows from it on one face: the open fraction, the
+// centroid of the closed part, and where an axis-parallel segment crosses the wall.
+#include "core/field.hpp"
+#include "flow/bodies.hpp"
+#include "flow/open_fraction.hpp"
+
+namespace peclet::flow {
+
+/// Smallest open fraction of a face whose centre is fluid: a fluid face is never closed.
+inline constexpr OpenFraction smallest_open_fraction = fully_open / 256;
+
+/// Distance to the bodies that own the two cells beside a face, callable in kernels.
+struct SolidSampler {
+  BodyGeometry geometry;
+  Field<Real> sdf;    // at cell centres, exact within a band around the surfaces
+  Field<int> owner;   // nearest body of a cell within that band
+  Field<Real> samples;  // the solid given as an array, if any
+  Grid grid;
+
+  KOKKOS_INLINE_FUNCTION Real distance(int body, Vec3 x) const {
+    if (body >= 0) return geometry.distance(body, x);
+    if (body == sampled_solid) return interpolated_sample(x);
+    return far_away;
+  }
+  KOKKOS_INLINE_FUNCTION Real distance(int a, int b, Vec3 x) const {
+    const Real d = distance(a, x);
+    if (a == b) return d;
+    const Real e = distance(b, x);
+    return e < d ? e : d;
+  }
+
+  /// Trilinear interpolation of the samples at cell centres.
+  KOKKOS_INLINE_FUNCTION Real interpolated_sample(Vec3 x) const {
+    int cell[3];
+    Real weight[3];
+    for (int a = 0; a < 3; ++a) {
+      Real s = (x[a] - grid.origin[a]) / grid.spacing[a] - 0.5;
+      if (s < -1) s = -1;
+      if (s > grid.cells[a] - 1e-9) s = grid.cells[a] - 1e-9;
+      cell[a] = static_cast<int>(Kokkos::floor(s));
+      weight[a] = s - cell[a];
+    }
+    Real value = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+      const int dx = corner & 1, dy = (corner >> 1) & 1, dz = corner >> 2;
+      value += (dx ? weight[0] : 1 - weight[0]) * (dy ? weight[1] : 1 - weight[1]) *
+               (dz ? weight[2] : 1 - weight[2]) * samples(cell[0] + dx, cell[1] + dy, cell[2] + dz);
+    }
+    return value;
+  }
+};
+
+/// Open part of a face from linear interpolation of the distance.
+struct FaceOpening {
+  Real open = 1;                    // fraction of the area
+  Real closed_s = 0, closed_t = 0;  // centroid of the closed part in units of the face edges, centre = 0
+};
+
+/// Adds one triangle (a quarter of the face: the centre and two corners) to a face opening whose closed_s
+/// and closed_t accumulate first moments of the closed part.
+KOKKOS_INLINE_FUNCTION void add_triangle(const Real (&d)[3], const Real (&s)[3], const Real (&t)[3], FaceOpening& face) {
+  const int closed_count = (d[0] < 0) + (d[1] < 0) + (d[2] < 0);
+  constexpr Real area = 0.25;
+  const Real mean_s = (s[0] + s[1] + s[2]) / 3, mean_t = (t[0] + t[1] + t[2]) / 3;
+  if (closed_count == 0) return;
+  Real closed = area, moment_s = area * mean_s, moment_t = area * mean_t;
+  if (closed_count < 3) {
+    // the vertex alone on its side cuts off a small triangle
+    int lone = 0;
+    for (int v = 0; v < 3; ++v)
+      if ((d[v] < 0) == (closed_count == 1)) lone = v;
+    const int a = (lone + 1) % 3, b = (lone + 2) % 3;
+    const Real to_a = d[lone] / (d[lone] - d[a]), to_b = d[lone] / (d[lone] - d[b]);
+    const Real part = area * to_a * to_b;
+    const Real part_s = s[lone] + (to_a * (s[a] - s[lone]) + to_b * (s[b] - s[lone])) / 3;
+    const Real part_t = t[lone] + (to_a * (t[a] - t[lone]) + to_b * (t[b] - t[lone])) / 3;
+    if (closed_count == 1) {
+      closed = part;
+      moment_s = part * part_s;
+      moment_t = part * part_t;
+    } else {
+      closed = area - part;
+      moment_s = area * mean_s - part * part_s;
+      moment_t = area * mean_t - part * part_t;
+    }
+  }
+  face.open -= closed;
+  face.closed_s += moment_s;
+  face.closed_t += moment_t;
+}
+
+/// Opening of the low face of cell (i, j, k) along axis, from five samples (centre and corners).
+/// s and t run along the axes (axis + 1) % 3 and (axis + 2) % 3.
+KOKKOS_INLINE_FUNCTION FaceOpening face_opening(const SolidSampler& solid, int axis, int i, int j, int k, int owner_low,
+                                                int owner_high) {
+  const int axis_s = (axis + 1) % 3, axis_t = (axis + 2) % 3;
+  const Vec3 center = solid.grid.face_center(axis, i, j, k);
+  constexpr Real corner_s[4] = {-0.5, 0.5, 0.5, -0.5}, corner_t[4] = {-0.5, -0.5, 0.5, 0.5};
+  Real d[4];
+  for (int n = 0; n < 4; ++n) {
+    Vec3 x = center;
+    x[axis_s] += corner_s[n] * solid.grid.spacing[axis_s];
+    x[axis_t] += corner_t[n] * solid.grid.spacing[axis_t];
+    d[n] = solid.distance(owner_low, owner_high, x);
+  }
+  const Real middle = solid.distance(owner_low, owner_high, center);
+  FaceOpening face;
+  for (int n = 0; n < 4; ++n) {
+    const int m = (n + 1) % 4;
+    const Real distance[3] = {middle, d[n], d[m]};
+    const Real s[3] = {0, corner_s[n], corner_s[m]}, t[3] = {0, corner_t[n], corner_t[m]};
+    add_triangle(distance, s, t, face);
+  }
+  const Real closed = 1 - face.open;
+  if (closed > 0) {
+    face.closed_s /= closed;
+    face.closed_t /= closed;
+  }
+  return face;
+}
+
+/// Distance from x to the wall along the segment towards y, as a fraction of the segment: root of the
+/// signed distance by safeguarded false position; 1 where the solid begins beyond y.
+KOKKOS_INLINE_FUNCTION Real wall_crossing(const SolidSampler& solid, int owner_a, int owner_b, Vec3 x, Vec3 y) {
+  Real low = 0, high = 1;
+  Real d_low = solid.distance(owner_a, owner_b, x), d_high = solid.distance(owner_a, owner_b, y);
+  if (d_low <= 0) return 0;
+  if (d_high >= 0) return 1;
+  Real root = 1;
+  for (int iteration = 0; iteration < 6; ++iteration) {
+    root = low + (high - low) * d_low / (d_low - d_high);
+    const Real d = solid.distance(owner_a, owner_b, x + root * (y - x));
+    if (Kokkos::abs(d) < 1e-9 * norm(y - x)) break;
+    if (d > 0) {
+      low = root;
+      d_low = d;
+      d_high *= 0.5;  // Illinois rule
+    } else {
+      high = root;
+      d_high = d;
+      d_low *= 0.5;
+    }
+  }
+  return root;
+}
+
+}  // namespace peclet::flow

@@ -1,0 +1,363 @@
+#include "flow/solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.hpp"
+#include "core/halo.hpp"
+#include "flow/projection.hpp"
+
+namespace peclet::flow {
+namespace {
+
+/// Adds the time since its construction to a counter when it goes out of scope.
+class Stopwatch {
+ public:
+  explicit Stopwatch(double& seconds) : seconds_(seconds) {}
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+  ~Stopwatch() {
+    Kokkos::fence("flow::stopwatch");
+    seconds_ += timer_.seconds();
+  }
+
+ private:
+  double& seconds_;
+  Kokkos::Timer timer_;
+};
+
+/// Implicit weight of viscosity from the second step on, see flow/momentum.hpp.
+constexpr Real second_order_weight = 9.0 / 16.0;
+/// Divergence that counts as zero, relative to velocity / spacing: what rounding leaves.
+constexpr Real divergence_rounding = 1e-13;
+/// Largest divergence after the projection, relative to velocity / spacing.
+constexpr Real divergence_limit = 3e-9;
+
+/// previous = u + r (u - u_old) + e: the predicted velocity takes the place of the oldest one.
+void apply_correction(const RowRanges& rows, Real step_ratio, const Field<Real>& velocity, const Field<Real>& correction,
+                      const Field<Real>& previous) {
+  const Field<Real> u = velocity, e = correction, old = previous;
+  for_each_cell(
+      "flow::apply_correction", rows, KOKKOS_LAMBDA(int i, int j, int k) {
+        const Index p = u.layout()(i, j, k);
+        old[p] = u[p] + step_ratio * (u[p] - old[p]) + e[p];
+      });
+}
+
+Real largest_component(const RowRanges& rows, const FaceVector<Real>& velocity) {
+  const FaceVector<Real> u = velocity;
+  return max_cells(
+      "flow::largest_velocity", rows, KOKKOS_LAMBDA(int i, int j, int k) {
+        const Index p = u.x.layout()(i, j, k);
+        const Real x = Kokkos::abs(u.x[p]), y = Kokkos::abs(u.y[p]), z = Kokkos::abs(u.z[p]);
+        const Real larger = x > y ? x : y;
+        return larger > z ? larger : z;
+      });
+}
+
+Real largest_magnitude(const RowRanges& rows, const Field<Real>& field) {
+  const Field<Real> f = field;
+  return max_cells(
+      "flow::largest_magnitude", rows, KOKKOS_LAMBDA(int i, int j, int k) { return Kokkos::abs(f(i, j, k)); });
+}
+
+/// Zero on closed faces.
+void mask_closed_faces(const RowRanges& whole, const FaceVector<OpenFraction>& open, const FaceVector<Real>& velocity) {
+  const FaceVector<OpenFraction> o = open;
+  const FaceVector<Real> u = velocity;
+  for_each_cell(
+      "flow::mask_closed_faces", whole, KOKKOS_LAMBDA(int i, int j, int k) {
+        const Index p = u.x.layout()(i, j, k);
+        for (int c = 0; c < 3; ++c) u[c][p] = o[c][p] ? u[c][p] : 0.0;
+      });
+}
+
+Real divergence_in_open_cells(const RowRanges& rows, const FaceVector<OpenFraction>& open, const Field<Real>& divergence) {
+  const FaceVector<OpenFraction> o = open;
+  const Field<Real> div = divergence;
+  return max_cells(
+      "flow::divergence_in_open_cells", rows, KOKKOS_LAMBDA(int i, int j, int k) {
+        const Index p = div.layout()(i, j, k);
+        const Index y = p + div.layout().pitch_y, z = p + div.layout().pitch_z;
+        const int any = o.x[p] + o.x[p + 1] + o.y[p] + o.y[y] + o.z[p] + o.z[z];
+        return any ? Kokkos::abs(div[p]) : 0.0;
+      });
+}
+
+/// Volume of the solid of body b, second order: cells near the surface count by their distance to it.
+Real body_volume(const BodyGeometry& geometry, const Grid& grid, int b, const Box& region) {
+  const BodyGeometry bodies = geometry;
+  const Real h = std::cbrt(grid.cell_volume());
+  return grid.cell_volume() *
+         sum_cells(
+             "flow::body_volume", RowRanges(region), KOKKOS_LAMBDA(int i, int j, int k) {
+               const Real fraction = 0.5 - bodies.distance(b, grid.cell_center(i, j, k)) / h;
+               return fraction < 0 ? 0.0 : (fraction > 1 ? 1.0 : fraction);
+             });
+}
+
+Real smallest_spacing(const Grid& grid) { return std::min({grid.spacing[0], grid.spacing[1], grid.spacing[2]}); }
+
+}  // namespace
+
+Solver::Solver(const Grid& grid)
+    : grid_(grid),
+      boundary_(grid, periodic_),
+      velocity_("flow::velocity", Layout(grid.cells)),
+      previous_("flow::previous_velocity", Layout(grid.cells)),
+      extrapolated_("flow::extrapolated_velocity", Layout(grid.cells)),
+      pressure_("flow::pressure", Layout(grid.cells)),
+      potential_("flow::potential", Layout(grid.cells)),
+      divergence_("flow::divergence", Layout(grid.cells)),
+      residual_("flow::residual", Layout(grid.cells)),
+      viscous_solver_(Layout(grid.cells)),
+      pressure_solver_(grid, PressureSides{}) {}
+
+void Solver::change_settings(const Settings& settings) { settings_ = settings; }
+
+void Solver::set_scene(const Scene& scene, bool periodic_images) {
+  scene_ = scene;
+  scene_has_images_ = periodic_images;
+  bodies_ = Bodies(scene, grid_, periodic_images, periodic_);
+  requested_poses_.assign(static_cast<std::size_t>(bodies_.count()), std::nullopt);
+  loads_.clear();
+  geometry_stale_ = true;
+  built_ = false;
+}
+
+void Solver::set_sampled_solid(const Field<Real>& distance) {
+  samples_ = distance;
+  fill_periodic_ghosts(samples_, periodic_);
+  build_geometry(false);
+}
+
+void Solver::build_geometry(bool keep_flow) {
+  for (int b = 0; b < bodies_.count(); ++b) {
+    auto& requested = requested_poses_[static_cast<std::size_t>(b)];
+    if (requested) bodies_.set_pose(b, requested->translation, requested->rotation);
+    requested.reset();
+  }
+  boundary_.build(bodies_, samples_);
+  pressure_solver_.set_open_fractions(boundary_.open(), boundary_.rows());
+  if (!keep_flow) {
+    for (int c = 0; c < 3; ++c) velocity_[c].fill(0);
+    pressure_.fill(0);
+  }
+  potential_.fill(0);
+  built_ = true;
+  geometry_stale_ = false;
+  wall_velocity_stale_ = false;
+  velocity_changed();
+}
+
+void Solver::velocity_changed() {
+  if (!built_) return;
+  mask_closed_faces(RowRanges(grid_.cells), boundary_.open(), velocity_);
+  for (int c = 0; c < 3; ++c) Kokkos::deep_copy(previous_[c].array(), velocity_[c].array());
+  previous_time_step_ = 0;
+  impose_body_motion();
+}
+
+void Solver::impose_body_motion() {
+  for (int c = 0; c < 3; ++c) {
+    impose_body_velocity(boundary_.body_faces(c), velocity_[c]);
+    impose_body_velocity(boundary_.body_faces(c), previous_[c]);
+  }
+}
+
+void Solver::set_pose(int body, Vec3 translation, Quaternion rotation) {
+  requested_poses_[static_cast<std::size_t>(body)] = Pose{translation, rotation, bodies_[body].pose.scale};
+  geometry_stale_ = true;
+}
+
+void Solver::set_motion(int body, const Twist& twist, const std::optional<Vec3>& center) {
+  bodies_.set_twist(body, twist);
+  if (center) bodies_.pin_center(body, *center);
+  wall_velocity_stale_ = true;
+}
+
+void Solver::promote_moved_bodies() {
+  bool promoted = false;
+  for (int b = 0; b < bodies_.count(); ++b) {
+    if (bodies_[b].dynamic || (!requested_poses_[static_cast<std::size_t>(b)] && !bodies_.moves(b))) continue;
+    bodies_.set_dynamic(b);
+    promoted = true;
+  }
+  if (!promoted || !built_) return;
+  boundary_.build(bodies_, samples_);
+  pressure_solver_.set_open_fractions(boundary_.open(), boundary_.rows());
+}
+
+void Solver::update_geometry() {
+  times_.geometry = 0;
+  const Stopwatch watch(times_.geometry);
+  promote_moved_bodies();
+  if (!built_) return build_geometry(true);
+  // faces about to be uncovered take the velocity of the body that covers them
+  boundary_.refresh_velocity(bodies_);
+  impose_body_motion();
+  for (int b = 0; b < bodies_.count(); ++b) {
+    auto& requested = requested_poses_[static_cast<std::size_t>(b)];
+    if (requested) bodies_.set_pose(b, requested->translation, requested->rotation);
+    requested.reset();
+  }
+  boundary_.update(bodies_, pressure_);
+  pressure_solver_.update_open_fractions(boundary_.changed());
+  impose_body_motion();
+  geometry_stale_ = false;
+  wall_velocity_stale_ = false;
+}
+
+void Solver::refresh_wall_velocity() {
+  promote_moved_bodies();
+  boundary_.refresh_velocity(bodies_);
+  impose_body_motion();
+  wall_velocity_stale_ = false;
+}
+
+MomentumTerms Solver::momentum_terms() const {
+  MomentumTerms terms;
+  terms.grid = grid_;
+  terms.extrapolated = extrapolated_;
+  terms.velocity = velocity_;
+  terms.previous = previous_;
+  terms.pressure = pressure_;
+  terms.time_step = settings_.time_step;
+  terms.density = settings_.density;
+  terms.kinematic_viscosity = settings_.viscosity / settings_.density;
+  if (previous_time_step_ > 0) {
+    terms.step_ratio = settings_.time_step / previous_time_step_;
+    terms.implicit_weight = second_order_weight;
+  }
+  for (int c = 0; c < 3; ++c) terms.acceleration[c] = settings_.body_force[c] / settings_.density;
+  terms.scheme = settings_.advection;
+  return terms;
+}
+
+void Solver::step() {
+  if (geometry_stale_) update_geometry();
+  if (wall_velocity_stale_) refresh_wall_velocity();
+  const double geometry_time = times_.geometry;
+  times_ = {};
+  times_.geometry = geometry_time;
+
+  const MomentumTerms terms = momentum_terms();
+  extrapolate_velocity(boundary_.rows(), velocity_, previous_, terms.step_ratio, extrapolated_);
+  for (int c = 0; c < 3; ++c) {
+    impose_body_velocity(boundary_.body_faces(c), extrapolated_[c]);
+    fill_periodic_ghosts(extrapolated_[c], periodic_);
+  }
+  fill_periodic_ghosts(pressure_, periodic_, 1);
+  const Real velocity_scale = largest_component(boundary_.rows(), extrapolated_);
+
+  predict_velocity(terms, velocity_scale);
+  std::swap(velocity_, previous_);  // velocity_ is now the predicted one
+  project_velocity(velocity_scale, terms.implicit_weight);
+  impose_body_motion();
+
+  previous_time_step_ = settings_.time_step;
+  time_ += settings_.time_step;
+  ++steps_;
+}
+
+void Solver::predict_velocity(const MomentumTerms& terms, Real velocity_scale) {
+  load_collector_.start(bodies_.count());
+  velocity_report_ = {};
+  for (int c = 0; c < 3; ++c) {
+    const WallRows &fixed_rows = boundary_.fixed_rows(c), &moving_rows = boundary_.moving_rows(c);
+    const Field<Real>& correction = divergence_;  // free until the projection
+    ViscousSystem system{grid_,
+                         terms.implicit_weight * terms.time_step * terms.kinematic_viscosity,
+                         boundary_.rows(),
+                         boundary_.open()[c],
+                         fixed_rows,
+                         moving_rows};
+    {
+      const Stopwatch watch(times_.momentum);
+      compute_momentum_residual(c, terms, boundary_.rows(), fixed_rows, moving_rows, residual_);
+    }
+    {
+      const Stopwatch watch(times_.viscous);
+      Real left_over = 0;
+      const SolverReport report =
+          viscous_solver_.solve(system, periodic_, residual_, correction, settings_.velocity_tolerance, velocity_scale,
+                                settings_.velocity_iteration_limit, left_over);
+      require_state(std::isfinite(left_over),
+                    "step(): the momentum solve met a value that is not finite; the time step may be too large");
+      velocity_report_.iterations = std::max(velocity_report_.iterations, report.iterations);
+      velocity_report_.residual = std::max(velocity_report_.residual, report.residual);
+      velocity_report_.converged = velocity_report_.converged && report.converged;
+      fill_periodic_ghosts(correction, periodic_, 1);
+      const Stopwatch load_watch(times_.loads);
+      load_collector_.add_momentum(c, terms, boundary_.solid(), fixed_rows, moving_rows, correction, left_over);
+    }
+    apply_correction(boundary_.rows(), terms.step_ratio, velocity_[c], correction, previous_[c]);
+  }
+}
+
+void Solver::project_velocity(Real velocity_scale, Real implicit_weight) {
+  for (int c = 0; c < 3; ++c) {
+    impose_body_velocity(boundary_.body_faces(c), velocity_[c]);
+    fill_periodic_ghosts(velocity_[c], periodic_, 1);
+  }
+  compute_divergence(grid_, boundary_.rows(), boundary_.open(), boundary_.cut_cells(), velocity_, divergence_);
+  {
+    const Stopwatch watch(times_.pressure);
+    const Real scale = std::max(velocity_scale, largest_component(boundary_.rows(), velocity_)) / smallest_spacing(grid_);
+    const Real largest = largest_magnitude(boundary_.rows(), divergence_);
+    PressureSettings limits;
+    limits.max_iterations = settings_.pressure_iteration_limit;
+    limits.relative_tolerance = settings_.pressure_tolerance;
+    limits.residual_limit = divergence_limit * scale;
+    if (largest * limits.relative_tolerance < divergence_rounding * scale)
+      limits.relative_tolerance = largest > 0 ? std::min(0.9, divergence_rounding * scale / largest) : 0.9;
+    const SolveReport report = pressure_solver_.solve(divergence_, potential_, limits);
+    require_state(std::isfinite(report.residual), "step(): the pressure solve met a value that is not finite");
+    pressure_report_ = {report.iterations, report.residual, report.converged};
+  }
+  subtract_gradient(grid_, boundary_.rows(), boundary_.open(), potential_, velocity_);
+  const Real density_over_time_step = settings_.density / settings_.time_step;
+  update_pressure(boundary_.rows(), density_over_time_step, 0, potential_, divergence_, pressure_);
+  fill_periodic_ghosts(pressure_, periodic_, 1);
+  {
+    const Stopwatch watch(times_.loads);
+    std::vector<Vec3> spin_resistance(static_cast<std::size_t>(bodies_.count()));
+    for (int b = 0; b < bodies_.count(); ++b) {
+      const Vec3 spin = bodies_[b].twist.angular;
+      if (dot(spin, spin) == 0) continue;
+      const Real volume = body_volume(bodies_.geometry(), grid_, b, bodies_.region(b, 1));
+      spin_resistance[static_cast<std::size_t>(b)] = 2 * settings_.viscosity * volume * spin;
+    }
+    for (int c = 0; c < 3; ++c)
+      load_collector_.add_pressure(c, boundary_.solid(), boundary_.fixed_rows(c), boundary_.moving_rows(c), pressure_);
+    loads_ = load_collector_.finish(spin_resistance);
+  }
+  update_pressure(boundary_.rows(), 0, implicit_weight * settings_.viscosity, potential_, divergence_, pressure_);
+}
+
+const std::vector<BodyLoad>& Solver::loads() const {
+  require_state(steps_ > 0, "hydro_force_torque_reaction(): call step() first");
+  return loads_;
+}
+
+Real Solver::largest_open_divergence() {
+  if (geometry_stale_) update_geometry();
+  for (int c = 0; c < 3; ++c) fill_periodic_ghosts(velocity_[c], periodic_, 1);
+  compute_divergence(grid_, boundary_.rows(), boundary_.open(), boundary_.cut_cells(), velocity_, divergence_);
+  return divergence_in_open_cells(boundary_.rows(), boundary_.open(), divergence_);
+}
+
+Real Solver::largest_velocity() const { return largest_component(boundary_.rows(), velocity_); }
+
+void Solver::sample_distance(const Field<Real>& distance, const Field<int>& owner) {
+  sample_all_bodies(grid_, bodies_.geometry(), bodies_.count(), samples_, distance, owner);
+}
+
+Index Solver::image_overlap_cells() { return count_image_overlap(grid_, bodies_.geometry(), bodies_.count()); }
+
+std::size_t Solver::bytes() const {
+  const std::size_t cells = velocity_.x.array().extent(0);
+  return cells * (9 + 4) * sizeof(Real) + viscous_solver_.bytes() + pressure_solver_.bytes() + boundary_.bytes();
+}
+
+}  // namespace peclet::flow

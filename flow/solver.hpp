@@ -1,0 +1,99 @@
+#pragma once
+// Incompressible flow around fixed and moving bodies on a staggered grid: owns the fields, and step() reads
+// as the scheme of flow/README.md.
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "flow/bodies.hpp"
+#include "flow/body_loads.hpp"
+#include "flow/immersed_boundary.hpp"
+#include "flow/momentum.hpp"
+#include "flow/pressure_solver.hpp"
+#include "flow/settings.hpp"
+#include "flow/viscous_solver.hpp"
+
+namespace peclet::flow {
+
+/// Wall time of the parts of the last step and of the last geometry update, in seconds.
+struct StepTimes {
+  double geometry = 0, momentum = 0, viscous = 0, pressure = 0, loads = 0, rest = 0;
+};
+
+class Solver {
+ public:
+  explicit Solver(const Grid& grid);
+
+  const Grid& grid() const { return grid_; }
+  const Settings& settings() const { return settings_; }
+  void change_settings(const Settings& settings);
+
+  // geometry
+  void set_scene(const Scene& scene, bool periodic_images);
+  void set_sampled_solid(const Field<Real>& distance);
+  /// Sample everything anew; keep_flow: keep velocity and pressure where a point stays fluid.
+  void build_geometry(bool keep_flow);
+  void set_pose(int body, Vec3 translation, Quaternion rotation);
+  void set_motion(int body, const Twist& twist, const std::optional<Vec3>& center);
+  void update_geometry();
+  void refresh_wall_velocity();
+  int number_of_bodies() const { return bodies_.count(); }
+  const Bodies& bodies() const { return bodies_; }
+
+  // time
+  void step();
+  double time() const { return time_; }
+  long number_of_steps() const { return steps_; }
+
+  // results
+  const std::vector<BodyLoad>& loads() const;
+  const SolverReport& velocity_report() const { return velocity_report_; }
+  const SolverReport& pressure_report() const { return pressure_report_; }
+  const StepTimes& times() const { return times_; }
+  Real largest_open_divergence();
+  Real largest_velocity() const;
+
+  const FaceVector<Real>& velocity() const { return velocity_; }
+  const Field<Real>& pressure() const { return pressure_; }
+  const FaceVector<OpenFraction>& open() const { return boundary_.open(); }
+  /// Signed distance and nearest body of every cell, evaluated from the scene.
+  void sample_distance(const Field<Real>& distance, const Field<int>& owner);
+  /// Cells that only a periodic image other than the unshifted one makes solid.
+  Index image_overlap_cells();
+
+  /// The velocity fields were written from outside.
+  void velocity_changed();
+  std::size_t bytes() const;
+
+ private:
+  void predict_velocity(const MomentumTerms& terms, Real velocity_scale);
+  void project_velocity(Real velocity_scale, Real implicit_weight);
+  void impose_body_motion();
+  void promote_moved_bodies();
+  MomentumTerms momentum_terms() const;
+
+  Grid grid_;
+  Periodicity periodic_;
+  Settings settings_;
+  Scene scene_;
+  bool scene_has_images_ = false;
+  Bodies bodies_;
+  std::vector<std::optional<Pose>> requested_poses_;
+  ImmersedBoundary boundary_;
+  bool geometry_stale_ = true, wall_velocity_stale_ = false, built_ = false;
+
+  FaceVector<Real> velocity_, previous_, extrapolated_;
+  Field<Real> pressure_, potential_, divergence_, residual_, samples_;
+  ViscousSolver viscous_solver_;
+  PressureSolver pressure_solver_;
+  LoadCollector load_collector_;
+  std::vector<BodyLoad> loads_;
+  SolverReport velocity_report_, pressure_report_;
+  StepTimes times_;
+  double time_ = 0;
+  long steps_ = 0;
+  Real previous_time_step_ = 0;
+};
+
+}  // namespace peclet::flow

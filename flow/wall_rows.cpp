@@ -1,0 +1,103 @@
+#include "flow/wall_rows.hpp"
+
+namespace peclet::flow {
+
+void WallRows::reserve(Index capacity) {
+  const auto n = static_cast<std::size_t>(capacity);
+  if (face.extent(0) >= n) return;
+  const std::size_t size = face.extent(0) == 0 ? n : n + n / 4;
+  face = Array<Index>("flow::wall_rows.face", size);
+  weight = Kokkos::View<float* [directions], MemorySpace>("flow::wall_rows.weight", size);
+  owner = Kokkos::View<int* [directions], MemorySpace>("flow::wall_rows.owner", size);
+  walls = Array<std::uint8_t>("flow::wall_rows.walls", size);
+  wall_sum = Array<Real>("flow::wall_rows.wall_sum", size);
+  superseded = Array<std::uint8_t>("flow::wall_rows.superseded", size);
+}
+
+namespace {
+
+/// Weights and owners of the row of component c at the low face of cell (i, j, k).
+KOKKOS_INLINE_FUNCTION void fill_row(const WallRows& rows, Index row, int c, const SolidSampler& solid,
+                                     const FaceVector<OpenFraction>& open, const RegionCell& cell) {
+  const Layout& layout = open.x.layout();
+  const Index p = layout(cell.i, cell.j, cell.k);
+  const Vec3 x = solid.grid.face_center(c, cell.i, cell.j, cell.k);
+  const int own_low = solid.owner[p - layout.stride(c)], own_high = solid.owner[p];
+  const int nearest =
+      own_low == own_high || solid.distance(own_low, x) < solid.distance(own_high, x) ? own_low : own_high;
+  int walls = 0;
+  for (int a = 0; a < 3; ++a) {
+    Real distance[2];
+    for (int s = 0; s < 2; ++s) {
+      const int d = 2 * a + s;
+      const Index q = p + (s ? layout.stride(a) : -layout.stride(a));
+      distance[s] = 1;
+      rows.owner(row, d) = nearest;
+      if (open[c][q] != 0) continue;
+      walls |= 1 << d;
+      Vec3 y = x;
+      y[a] += (s ? 1 : -1) * solid.grid.spacing[a];
+      const int low = solid.owner[q - layout.stride(c)], high = solid.owner[q];
+      const int wall = low == high || solid.distance(low, y) < solid.distance(high, y) ? low : high;
+      rows.owner(row, d) = wall;
+      const Real crossing = wall_crossing(solid, wall, nearest, x, y);
+      distance[s] = crossing > smallest_wall_distance ? crossing : smallest_wall_distance;
+    }
+    const Real total = distance[0] + distance[1];
+    rows.weight(row, 2 * a) = static_cast<float>(2 / (distance[0] * total));
+    rows.weight(row, 2 * a + 1) = static_cast<float>(2 / (distance[1] * total));
+  }
+  rows.face(row) = p;
+  rows.walls(row) = static_cast<std::uint8_t>(walls);
+  rows.superseded(row) = 0;
+}
+
+}  // namespace
+
+void build_wall_rows(int c, const SolidSampler& solid, const FaceVector<OpenFraction>& open, const RegionList& regions,
+                     const Array<Index>& scratch, WallRows& rows) {
+  const RegionView region = regions.view();
+  const FaceVector<OpenFraction> fraction = open;
+  const Layout layout = open.x.layout();
+  rows.count = enumerate(
+      "flow::build_wall_rows.count", regions.number_of_cells(), scratch, KOKKOS_LAMBDA(Index n) {
+        const RegionCell cell = region.cell(n);
+        const Index p = layout(cell.i, cell.j, cell.k);
+        return cell.unique && fraction[c][p] != 0 && touches_wall(fraction, c, p);
+      });
+  rows.reserve(rows.count);
+  const WallRows target = rows;
+  const SolidSampler sampler = solid;
+  const Index total = regions.number_of_cells();
+  const Index kept = rows.count;
+  for_each(
+      "flow::build_wall_rows", total, KOKKOS_LAMBDA(Index n) {
+        const Index row = scratch(n);
+        const bool is_kept = (n + 1 < total ? scratch(n + 1) : kept) > row;
+        if (is_kept) fill_row(target, row, c, sampler, fraction, region.cell(n));
+      });
+}
+
+void refresh_wall_velocity(int c, const SolidSampler& solid, const WallRows& rows) {
+  const SolidSampler sampler = solid;
+  const WallRows target = rows;
+  const Layout layout = solid.sdf.layout();
+  for_each(
+      "flow::refresh_wall_velocity", rows.count, KOKKOS_LAMBDA(Index row) {
+        const Int3 cell = cell_of(layout, target.face(row));
+        const Vec3 x = sampler.grid.face_center(c, cell[0], cell[1], cell[2]);
+        Real sum = 0;
+        for (int d = 0; d < WallRows::directions; ++d) {
+          const int body = target.owner(row, d);
+          if (!target.is_wall(row, d) || body < 0) continue;
+          const int a = d / 2;
+          const Real h = sampler.grid.spacing[a];
+          Vec3 wall = x;
+          wall[a] += (d % 2 ? 1 : -1) * h * target.wall_distance(row, d);
+          sum += target.weight(row, d) * sampler.geometry.velocity(body, wall)[c] / (h * h);
+        }
+        target.wall_sum(row) = sum;
+      });
+}
+
+}  // namespace peclet::flow

@@ -1,0 +1,77 @@
+#pragma once
+// Velocity points whose stencil touches a wall: a compact list beside the regular grid sweep.
+#include "core/field.hpp"
+#include "flow/open_fraction.hpp"
+#include "flow/region_list.hpp"
+#include "flow/solid_sampler.hpp"
+
+namespace peclet::flow {
+
+/// Smallest distance to a wall, in spacings, that enters a stencil: bounds the coefficients.
+inline constexpr Real smallest_wall_distance = 1e-3;
+
+/// Rows of one velocity component. Direction d = 2 a + s is the low (s = 0) or high (s = 1) neighbour along
+/// axis a. Along each axis, with wall (or neighbour) distances l and h in spacings [ShortleyWeller1938],
+///   u'' = [ 2 / (l (l + h)) (u_low - u) + 2 / (h (l + h)) (u_high - u) ] / spacing^2,
+/// where u_low or u_high is the wall velocity on the side of a wall: exact for quadratic profiles.
+struct WallRows {
+  static constexpr int directions = 6;
+
+  Index count = 0;
+  Array<Index> face;                                   // linear index of the velocity point
+  Kokkos::View<float* [directions], MemorySpace> weight;  // 2 / (l (l + h)), not divided by spacing^2
+  Kokkos::View<int* [directions], MemorySpace> owner;  // body of each wall; of the nearest body elsewhere
+  Array<std::uint8_t> walls;                           // bit d: there is a wall in direction d
+  Array<Real> wall_sum;                                // sum over walls of weight * wall velocity / spacing^2
+  Array<std::uint8_t> superseded;                      // rows of fixed bodies inside a moving region
+
+  KOKKOS_INLINE_FUNCTION bool is_wall(Index row, int d) const { return (walls(row) >> d) & 1; }
+
+  /// Distance to the wall in direction d, in spacings: from w_l = 2 / (l S), w_h = 2 / (h S), S = l + h.
+  KOKKOS_INLINE_FUNCTION Real wall_distance(Index row, int d) const {
+    const Real w = weight(row, d), other = weight(row, d ^ 1);
+    const Real total = Kokkos::sqrt(2 * (1 / w + 1 / other));
+    return 2 / (w * total);
+  }
+
+  void reserve(Index capacity);
+  Index bytes() const {
+    constexpr std::size_t per_row = sizeof(Index) + directions * (sizeof(float) + sizeof(int)) + sizeof(Real) + 2;
+    return static_cast<Index>(face.extent(0) * per_row);
+  }
+};
+
+/// Indices of the cell that a linear index belongs to.
+KOKKOS_INLINE_FUNCTION Int3 cell_of(const Layout& layout, Index n) {
+  const Index m = n - layout.offset;
+  const int k = static_cast<int>(m / layout.pitch_z);
+  const int j = static_cast<int>((m - k * layout.pitch_z) / layout.pitch_y);
+  return {static_cast<int>(m - k * layout.pitch_z - j * layout.pitch_y), j, k};
+}
+
+/// True where the stencil of component c at fluid face p touches a wall: a neighbouring point is solid, or
+/// a face that carries mass through its control volume is partly closed.
+KOKKOS_INLINE_FUNCTION bool touches_wall(const FaceVector<OpenFraction>& open, int c, Index p) {
+  const Layout& layout = open.x.layout();
+  const Index own = layout.stride(c);
+  bool touched = open[c][p] < fully_open;
+  for (int a = 0; a < 3; ++a) {
+    const Index step = layout.stride(a);
+    touched = touched || open[c][p - step] == 0 || open[c][p + step] == 0;
+    if (a == c)
+      touched = touched || open[c][p - step] < fully_open || open[c][p + step] < fully_open;
+    else
+      touched = touched || open[a][p] < fully_open || open[a][p - own] < fully_open ||
+                open[a][p + step] < fully_open || open[a][p + step - own] < fully_open;
+  }
+  return touched;
+}
+
+/// Lists the rows of component c among the cells of the regions (or of the whole grid when regions is null).
+void build_wall_rows(int c, const SolidSampler& solid, const FaceVector<OpenFraction>& open, const RegionList& regions,
+                     const Array<Index>& scratch, WallRows& rows);
+
+/// Recomputes wall_sum from the present velocities of the bodies.
+void refresh_wall_velocity(int c, const SolidSampler& solid, const WallRows& rows);
+
+}  // namespace peclet::flow
