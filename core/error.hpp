@@ -17,6 +17,9 @@ void require(bool ok, const std::string& argument, const std::string& expected,
   throw std::invalid_argument(message.str());
 }
 
+/// "name[n]"
+inline std::string indexed(const std::string& name, long long n) { return name + "[" + std::to_string(n) + "]"; }
+
 inline void require_finite(double value, const std::string& argument) {
   require(std::isfinite(value), argument, "a finite number", value);
 }
