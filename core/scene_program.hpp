@@ -65,8 +65,8 @@ class SceneProgram {
     return pose.scale * evaluate<Real>(program, to_local(pose, world));
   }
 
-  /// Gradient of the distance in the frame of the root: the unit normal for exact distances, zero at points
-  /// such as the centre of a sphere.
+  /// Gradient of the distance in the frame of the root, of unit length for exact distances. Where several
+  /// surface points are equally near it belongs to one of them.
   KOKKOS_FUNCTION Vec3 gradient(int slot, Vec3 local) const {
     return evaluate<sdf::Dual>(slots_(slot), local).gradient;
   }

@@ -1,6 +1,6 @@
 #pragma once
 // A number together with its gradient, so that each distance is written once and differentiated exactly.
-// Where a distance has no derivative (the centre of a sphere) the gradient is zero or one-sided.
+// Where a distance has no derivative (the centre of a sphere) its gradient is a one-sided one.
 #include "core/types.hpp"
 #include "core/vec3.hpp"
 
@@ -55,13 +55,19 @@ template <class T>
 KOKKOS_INLINE_FUNCTION T smaller(T a, T b) {
   return value_of(b) < value_of(a) ? b : a;
 }
+/// Length of the vector whose square and first component are given. At zero its derivative is that of the
+/// component, one of the many one-sided ones.
+KOKKOS_INLINE_FUNCTION Real length_of(Real square, Real) { return Kokkos::sqrt(square); }
+KOKKOS_INLINE_FUNCTION Dual length_of(Dual square, Dual component) {
+  return square.value > 0 ? square_root(square) : component;
+}
 template <class T>
 KOKKOS_INLINE_FUNCTION T length(T a, T b) {
-  return square_root(a * a + b * b);
+  return length_of(a * a + b * b, a);
 }
 template <class T>
 KOKKOS_INLINE_FUNCTION T length(T a, T b, T c) {
-  return square_root(a * a + b * b + c * c);
+  return length_of(a * a + b * b + c * c, a);
 }
 
 /// The number with this value and these partial derivatives with respect to x, y, z.

@@ -104,7 +104,9 @@ KOKKOS_INLINE_FUNCTION T convex_superquadric(const T (&x)[3], Vec3 r, Real e, co
     slope_squared = slope_squared + slope * slope;
   }
   const T tangent = (largest * norm_of_scaled - 1.0) / square_root(slope_squared);
-  if (value_of(tangent) >= 0) return tangent;
+  // Next to the surface the tangent is as good, and free of the cancellation in along_axis.
+  constexpr Real shallow = 1e-6;
+  if (value_of(tangent) > -shallow * Kokkos::fmin(r.x, Kokkos::fmin(r.y, r.z))) return tangent;
   return larger(larger(larger(tangent, along_axis[0]), along_axis[1]), along_axis[2]);
 }
 
