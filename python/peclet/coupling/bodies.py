@@ -1,0 +1,86 @@
+"""What the coupling must know of a rigid body beside its shape, and the inertia of the fluid around it."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from peclet import _checks
+
+
+@dataclasses.dataclass(frozen=True)
+class Body:
+    """A rigid body that the fluid moves.
+
+    instance: its row in the scene of the flow solver; volume: of the fluid that it displaces;
+    inertia: principal moments about the centre of mass, along the axes of its shape.
+    """
+
+    instance: int
+    mass: float
+    volume: float
+    inertia: tuple[float, float, float]
+
+    def __post_init__(self) -> None:
+        _checks.integer(self.instance, "instance", low=0)
+        _checks.positive(self.mass, "mass")
+        _checks.positive(self.volume, "volume")
+        for axis, moment in enumerate(_checks.vector(self.inertia, "inertia")):
+            _checks.positive(moment, f"inertia[{axis}]")
+
+    @classmethod
+    def sphere(cls, instance: int, *, radius: float, density: float) -> Body:
+        """A homogeneous sphere.
+
+        >>> Body.sphere(1, radius=1.0, density=3.0).mass / math.pi
+        4.0
+        """
+        radius = _checks.positive(radius, "radius")
+        volume = 4 / 3 * math.pi * radius**3
+        mass = _checks.positive(density, "density") * volume
+        return cls(instance, mass, volume, (0.4 * mass * radius**2,) * 3)
+
+
+@dataclasses.dataclass(frozen=True)
+class FluidInertia:
+    """How much the fluid resists an acceleration of each body within one time step, one entry per body.
+
+    The reaction force to a change dv of the velocity over dt is about -(added_mass + damping) dv / dt, of
+    which the first part stands only while the body accelerates and the second as long as it moves; likewise
+    for rotations.
+    """
+
+    added_mass: NDArray[np.float64]
+    damping: NDArray[np.float64]
+    added_inertia: NDArray[np.float64]
+    rotational_damping: NDArray[np.float64]
+
+
+def fixed_fluid_inertia(bodies: Sequence[Body], density: float, coefficient: float) -> FluidInertia:
+    """So many times the displaced mass, nothing for rotations: a virtual mass chosen by hand."""
+    none = np.zeros(len(bodies))
+    return FluidInertia(coefficient * density * np.array([body.volume for body in bodies]), none, none, none)
+
+
+def estimated_fluid_inertia(
+    bodies: Sequence[Body], density: float, viscosity: float, time_step: float
+) -> FluidInertia:
+    """Unbounded fluid around the sphere of equal volume, radius a; first order in time whatever the values.
+
+    A sphere that gains the velocity dv at once gives the fluid, within dt, the impulse
+    dv (rho V / 2 + 12 a^2 sqrt(pi rho mu dt) + 6 pi mu a dt): added mass, history force and Stokes drag; one
+    that gains the rate of rotation dw gives it dw (16/3 a^4 sqrt(pi rho mu dt) + 8 pi mu a^3 dt)
+    [LandauLifshitz1987, section 24].
+    """
+    volume = np.array([body.volume for body in bodies])
+    a = np.cbrt(0.75 / math.pi * volume)
+    layer = math.sqrt(math.pi * density * viscosity * time_step)
+    return FluidInertia(
+        added_mass=density * volume / 2 + 12 * a**2 * layer,
+        damping=6 * math.pi * viscosity * a * time_step,
+        added_inertia=16 / 3 * a**4 * layer,
+        rotational_damping=8 * math.pi * viscosity * a**3 * time_step,
+    )
