@@ -56,7 +56,9 @@ void close_connections(const Connections& connections) {
   for (int via = 0; via < connections.size; ++via)
     for_each_entry(
         "flow::connect", connections.size, connections.size,
-        KOKKOS_LAMBDA(int j, int i) { connections(i, j) |= connections(i, via) & connections(via, j); });
+        KOKKOS_LAMBDA(int j, int i) {
+          if (connections(i, via) && connections(via, j)) connections(i, j) = 1;
+        });
 }
 
 /// A -> A + sum over singular regions of scale v v^T, v being the constant unit vector of the region and

@@ -175,7 +175,7 @@ void subtract_means(const RowMasks& masks, Index rows, const Array<Real>& means,
       });
 }
 
-void divide_sums(int number, const Array<Index>& cells, const Array<int>& fixed, const Array<Real>& means) {
+void divide_sums(Index number, const Array<Index>& cells, const Array<int>& fixed, const Array<Real>& means) {
   for_each(
       "flow::means", number,
       KOKKOS_LAMBDA(Index n) { means(n) = fixed(n) ? 0 : means(n) / static_cast<Real>(cells(n)); });

@@ -282,7 +282,7 @@ void ImmersedBoundary::sample_moving(const RegionList& regions) {
     build_wall_rows(c, solid_, open_, regions, scratch_, moving_rows_[c]);
     build_body_faces(c, solid_, open_, regions, scratch_, body_faces_[c]);
   }
-  build_cut_cells(solid_, open_, regions, scratch_, cut_cells_);
+  build_cut_cells(open_, regions, scratch_, cut_cells_);
 }
 
 std::size_t ImmersedBoundary::bytes() const {

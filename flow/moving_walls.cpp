@@ -83,7 +83,7 @@ void build_body_faces(int c, const SolidSampler& solid, const FaceVector<OpenFra
       });
 }
 
-void build_cut_cells(const SolidSampler& solid, const FaceVector<OpenFraction>& open, const RegionList& regions,
+void build_cut_cells(const FaceVector<OpenFraction>& open, const RegionList& regions,
                      const Array<Index>& scratch, CutCells& cells) {
   const RegionView region = regions.view();
   const FaceVector<OpenFraction> fraction = open;

@@ -31,7 +31,7 @@ struct CutCells {
 
 void build_body_faces(int c, const SolidSampler& solid, const FaceVector<OpenFraction>& open, const RegionList& regions,
                       const Array<Index>& scratch, BodyFaces& faces);
-void build_cut_cells(const SolidSampler& solid, const FaceVector<OpenFraction>& open, const RegionList& regions,
+void build_cut_cells(const FaceVector<OpenFraction>& open, const RegionList& regions,
                      const Array<Index>& scratch, CutCells& cells);
 
 /// Recompute velocities and fluxes from the present motion of the bodies.
