@@ -1,0 +1,171 @@
+"""Instruments: how the solves went, what the discrete equations add up to, and switches of other versions."""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from peclet import _checks
+from peclet.flow import _flow
+from peclet.flow._base import Part, SolverReport, Status
+
+
+class Instruments(Part):
+    """Available on Solver.diagnostics and, as in older scripts, on Solver itself."""
+
+    @property
+    def velocity_report(self) -> SolverReport:
+        """The last viscous solve: the worst of its three components."""
+        return SolverReport(**self._core.velocity_report())
+
+    @property
+    def pressure_report(self) -> SolverReport:
+        """The last pressure solve."""
+        return SolverReport(**self._core.pressure_report())
+
+    def last_pressure_iterations(self) -> int:
+        """Iterations of the last pressure solve."""
+        return self.pressure_report.iterations
+
+    def last_momentum_residual(self) -> float:
+        """Residual of the last viscous solve, relative to the largest velocity."""
+        return self.velocity_report.residual
+
+    def last_outer_iterations(self) -> int:
+        """Passes over the equations in the last step: one, none before the first step."""
+        return min(1, self._core.number_of_steps)
+
+    def pressure_solve_failed(self) -> bool:
+        """Whether the last pressure solve met its cap before its tolerance."""
+        return not self.pressure_report.converged
+
+    def last_step_timers(self) -> dict[str, float]:
+        """Seconds spent in the parts of the last step."""
+        return dict(self._core.times())
+
+    def set_velocity_solver_params(self, iters: int, rtol: float = 0.0, min_iters: int = 2) -> None:
+        """Cap on the iterations of the viscous solve.
+
+        The tolerance decides below the cap: rtol if positive, else the one that is set already.
+        min_iters is accepted from scripts and has no effect.
+        """
+        cap = _checks.integer(iters, "iters", 1, 2**31 - 1)
+        tolerance = _checks.non_negative(rtol, "rtol")
+        if tolerance >= 1:
+            raise _checks.wrong_value("rtol", "a number below 1", tolerance)
+        _checks.integer(min_iters, "min_iters", 0)
+        self._core.velocity_iteration_limit = cap
+        if tolerance > 0:
+            self._status.velocity_tolerance_follows_pressure = False
+            self._core.velocity_tolerance = tolerance
+
+    def periodic_image_overlap_cells(self) -> int:
+        """Cells that only a periodic image of a body, shifted by the length of the box, makes solid."""
+        return self._core.image_overlap_cells()
+
+    def get_cut_owner(self) -> NDArray[np.int32]:
+        """Instance nearest to every cell, int32 of shape (nx, ny, nz).
+
+        -1 where there is no body, -2 where the distance given to set_solid() is the smallest.
+        """
+        return self._core.distance_and_owner()[1]
+
+    def instance_center_pinned(self, i: int) -> bool:
+        """Whether the centre of rotation stays where it is, instead of following the translation."""
+        return self._core.body_center_pinned(self._instance(i, "i"))
+
+    def fluid_momentum_cells(self) -> list[int]:
+        """Number of fluid faces of each velocity component."""
+        return [int(np.count_nonzero(self._open_fraction(c))) for c in range(3)]
+
+    def reaction_budget_terms(self) -> NDArray[np.float64]:
+        """Terms of the force budget of the last step, shape (2, 3).
+
+        Row 0: density / dt times the sum of the velocity change over the fluid faces, times the cell volume.
+        Row 1: zero, because the momentum that advection carries through the walls is part of the force on
+        the bodies. So the forces on all bodies (and on the solid of set_solid) add up to body force times
+        volume of fluid faces + row 1 - row 0.
+        """
+        if not self._status.has_budget:
+            raise RuntimeError("reaction_budget_terms(): call step() first")
+        return np.array([self._core.momentum_change(), [0.0, 0.0, 0.0]])
+
+    def hydro_force_torque_traction(self) -> NDArray[np.float64]:
+        """The reaction force and torque, with a warning: stresses are not taken to the surface here."""
+        _warn_reaction("hydro_force_torque_traction")
+        return self._loads("hydro_force_torque_traction")
+
+    def block_origin(self) -> list[int]:
+        """First cell of this process."""
+        return [0, 0, 0]
+
+    def bcast_from_root(self, value: Any) -> Any:
+        """The value itself: there is one process."""
+        return value
+
+    def set_fresh_cell_seed(self, on: bool) -> None:
+        """Accepted from scripts: uncovered points always take the velocity of the surface."""
+        _always_on("set_fresh_cell_seed", on)
+
+    def set_incremental_pressure(self, on: bool) -> None:
+        """Accepted from scripts: each step always starts from the pressure of the last one."""
+        _always_on("set_incremental_pressure", on)
+
+    def set_rotational_pressure(self, on: bool) -> None:
+        """Accepted from scripts: the pressure always is corrected by the viscous part."""
+        _always_on("set_rotational_pressure", on)
+
+    def set_pressure_warmstart(self, on: bool) -> None:
+        """Accepted from scripts: the pressure solve always starts from the last solution."""
+        _always_on("set_pressure_warmstart", on)
+
+    def set_pressure_exact_residual(self, on: bool = True) -> None:
+        """Accepted from scripts: the residual that stops the pressure solve always is computed anew."""
+        _always_on("set_pressure_exact_residual", on)
+
+    def set_wall_flux_divergence(self, on: bool) -> None:
+        """Accepted from scripts: the flux of moving walls always enters the projection."""
+        _always_on("set_wall_flux_divergence", on)
+
+    def set_exact_crossings_from_scene(self) -> None:
+        """Accepted from scripts: wall distances along the axes always are those of the scene."""
+
+    def set_outer_iterations(self, n: int) -> None:
+        """Accepted from scripts: each step makes one pass over the equations."""
+        if _checks.integer(n, "n", 1) > 1:
+            warnings.warn(
+                f"set_outer_iterations({n}): each step makes one pass over the equations",
+                RuntimeWarning,
+                stacklevel=2,
+            )
+
+    def _loads(self, call: str) -> NDArray[np.float64]:
+        if self._core.number_of_bodies == 0:
+            return np.zeros((2, 0, 3))
+        if not self._status.has_loads:
+            raise RuntimeError(f"{call}(): call step() first")
+        return self._core.loads()
+
+
+class SolverDiagnostics(Instruments):
+    """The instruments of one solver: Solver.diagnostics."""
+
+    def __init__(self, core: _flow.Solver, status: Status, cells: tuple[int, int, int]) -> None:
+        self._core = core
+        self._status = status
+        self._cells = cells
+
+
+def _warn_reaction(call: str) -> None:
+    warnings.warn(
+        f"{call}() returns the reaction of the discrete equations: call hydro_force_torque_reaction()",
+        DeprecationWarning,
+        stacklevel=3,
+    )
+
+
+def _always_on(call: str, on: Any) -> None:
+    if not _checks.flag(on, "on"):
+        warnings.warn(f"{call}(False): this is always on", RuntimeWarning, stacklevel=3)

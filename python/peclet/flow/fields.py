@@ -1,0 +1,126 @@
+"""Reading and writing the flow. Arrays are float64 in Fortran order of shape (nx, ny, nz), indexed [x, y, z].
+
+u[i, j, k] lives on the low x face of its cell, v and w on the low y and z faces, p and sdf at its centre.
+What a call returns is a copy.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from peclet import _checks
+from peclet.flow._base import Part
+
+Array = NDArray[np.float64]
+_COMPONENTS = ("u", "v", "w")
+_NAMES = ("p", "sdf", "u", "v", "w")
+
+
+class Fields(Part):
+    """Velocities inside solid read as exactly zero."""
+
+    def get_u(self) -> Array:
+        """Velocity along x on the low x faces."""
+        return self._velocity(0)
+
+    def get_v(self) -> Array:
+        """Velocity along y on the low y faces."""
+        return self._velocity(1)
+
+    def get_w(self) -> Array:
+        """Velocity along z on the low z faces."""
+        return self._velocity(2)
+
+    # The projected velocity of the faces is the velocity on this grid.
+    get_uf, get_vf, get_wf = get_u, get_v, get_w
+
+    def get_p(self) -> Array:
+        """Pressure at the cell centres, defined up to a constant."""
+        return self._core.pressure()
+
+    def get_ox(self) -> Array:
+        """Open (fluid) part of the low x faces, from 0 to 1."""
+        return self._open_fraction(0)
+
+    def get_oy(self) -> Array:
+        """Open (fluid) part of the low y faces, from 0 to 1."""
+        return self._open_fraction(1)
+
+    def get_oz(self) -> Array:
+        """Open (fluid) part of the low z faces, from 0 to 1."""
+        return self._open_fraction(2)
+
+    get_ox_proj, get_oy_proj, get_oz_proj = get_ox, get_oy, get_oz
+
+    def field_names(self) -> list[str]:
+        """Names that get_field() knows."""
+        return list(_NAMES)
+
+    def has_field(self, name: str) -> bool:
+        """Whether get_field() knows this name."""
+        if not isinstance(name, str):
+            raise _checks.wrong_type("name", "a name", name)
+        return name in _NAMES
+
+    def get_field(self, name: str) -> Array:
+        """Copy of the field 'u', 'v', 'w', 'p' or 'sdf' (signed distance, negative in solid)."""
+        name = _checks.choice(name, "name", _NAMES)
+        if name == "p":
+            return self.get_p()
+        if name == "sdf":
+            return self._core.distance_and_owner()[0]
+        return self._velocity(_COMPONENTS.index(name))
+
+    def set_field(self, name: str, array: ArrayLike) -> None:
+        """Overwrite 'u', 'v', 'w' or 'p'. Any real dtype and memory order; the shape must be (nx, ny, nz)."""
+        if name == "sdf":
+            raise _checks.wrong_value(
+                "name", "'u', 'v', 'w' or 'p' (the distance is given by set_solid)", name
+            )
+        name = _checks.choice(name, "name", ("u", "v", "w", "p"))
+        values = _checks.field(array, "array", self._cells)
+        if name == "p":
+            self._core.assign_pressure(values)
+        else:
+            self._assign_velocity(**{name: values})
+
+    def set_velocity(self, c: int, array: ArrayLike) -> None:
+        """Overwrite component c (0, 1 or 2) of the velocity."""
+        component = _COMPONENTS[_checks.integer(c, "c", 0, 2)]
+        self._assign_velocity(**{component: _checks.field(array, "array", self._cells)})
+
+    def set_state(self, u: ArrayLike, v: ArrayLike, w: ArrayLike) -> None:
+        """Overwrite the velocity. Values in solid are ignored; the next step restarts the time scheme.
+
+        >>> solver = Solver(8, 6, 4)
+        >>> solver.set_state(np.ones((8, 6, 4)), np.zeros((8, 6, 4)), np.zeros((8, 6, 4)))
+        >>> solver.step()
+        >>> bool(np.allclose(solver.get_u(), 1))
+        True
+        """
+        components = zip(_COMPONENTS, (u, v, w), strict=True)
+        self._assign_velocity(**{c: _checks.field(array, c, self._cells) for c, array in components})
+
+    def max_open_divergence(self) -> float:
+        """Largest net flux out of an open cell over its volume, moving walls included."""
+        self._require_geometry()
+        return self._core.largest_open_divergence()
+
+    def max_open_divergence_projected(self) -> float:
+        """The same as max_open_divergence() on this grid."""
+        return self.max_open_divergence()
+
+    def max_velocity(self) -> float:
+        """Largest velocity component."""
+        self._require_geometry()
+        return self._core.largest_velocity()
+
+    def _velocity(self, c: int) -> Array:
+        self._require_geometry()
+        return self._core.velocity(c)
+
+    def _assign_velocity(self, u: Any = None, v: Any = None, w: Any = None) -> None:
+        self._core.assign_velocity(u, v, w)
+        self._status.has_budget = False

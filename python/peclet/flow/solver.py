@@ -1,0 +1,259 @@
+"""The documented solver: a face of the compiled one that accepts both generations of its calls."""
+
+from __future__ import annotations
+
+import inspect
+import os
+import warnings
+from collections.abc import Sequence
+from typing import Any, overload
+
+import numpy as np
+from numpy.typing import NDArray
+from peclet import _checks
+from peclet.flow import _flow
+from peclet.flow._base import Status
+from peclet.flow.diagnostics import Instruments, SolverDiagnostics, _warn_reaction
+from peclet.flow.fields import Fields
+from peclet.flow.geometry import Geometry
+from peclet.flow.parameters import Parameters
+
+_LARGEST = 2**20  # cells along one axis
+_BYTES_PER_CELL = 200  # at least
+
+
+class Solver(Parameters, Geometry, Fields, Instruments):
+    """Incompressible flow in a periodic box, around fixed and moving bodies.
+
+    ``Solver(nx, ny, nz)`` works in cell units: cells of size 1, the centre of cell (i, j, k) at (i, j, k).
+
+    ``Solver((nx, ny, nz), extent=(Lx, Ly, Lz), origin=(0, 0, 0))`` works in the user's own consistent units:
+    cells of size extent / cells, the low corner of the box at origin.
+
+    Without a scene the box is full of fluid. Time marches with step().
+
+    >>> solver = Solver(16, 16, 16)
+    >>> solver.set_rho(1); solver.set_mu(0.1); solver.set_dt(1)
+    >>> solver.set_body_force(1e-3, 0, 0)
+    >>> solver.step()
+    >>> float(solver.get_u().mean().round(6))  # nothing holds the fluid: dt force / density
+    0.001
+    """
+
+    @overload
+    def __init__(self, nx: int, ny: int, nz: int) -> None: ...
+    @overload
+    def __init__(
+        self,
+        cells: Sequence[int],
+        extent: Sequence[float] | None = None,
+        origin: Sequence[float] | None = None,
+        global_cells: Sequence[int] | None = None,
+    ) -> None: ...
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        in_cell_units = "nx" in kwargs or (args and np.ndim(args[0]) == 0)
+        form = _cell_units if in_cell_units else _physical_units
+        try:
+            given = inspect.signature(form).bind(*args, **kwargs)
+        except TypeError as error:
+            raise TypeError(f"Solver(): {error}; expected nx, ny, nz or cells, extent, origin") from None
+        cells, extent, origin = form(*given.args, **given.kwargs)
+        _require_memory(cells)
+        self._physical_units = extent is not None
+        self._cells = (cells[0], cells[1], cells[2])
+        self._extent = [float(n) for n in cells] if extent is None else list(extent)
+        self._spacing = [length / n for length, n in zip(self._extent, cells, strict=True)]
+        self._origin = list(origin)
+        self._core = _flow.Solver(cells, self._spacing, self._origin)
+        self._status = Status()
+
+    # grid
+
+    @property
+    def cells(self) -> list[int]:
+        """Number of cells along each axis."""
+        return list(self._cells)
+
+    @property
+    def global_cells(self) -> list[int]:
+        """Number of cells of the whole box along each axis: the same as cells."""
+        return list(self._cells)
+
+    @property
+    def spacing(self) -> list[float]:
+        """Size of a cell along each axis."""
+        return list(self._spacing)
+
+    @property
+    def extent(self) -> list[float]:
+        """Size of the box along each axis."""
+        return list(self._extent)
+
+    @property
+    def origin(self) -> list[float]:
+        """Low corner of the box in scene coordinates: -0.5 along each axis in cell units."""
+        return list(self._origin)
+
+    @property
+    def physical_units(self) -> bool:
+        """Whether an extent was given; False means cell units."""
+        return self._physical_units
+
+    def get_resolution(self) -> list[int]:
+        """Older name of cells."""
+        return self.cells
+
+    def get_spacing(self) -> list[float]:
+        """Older name of spacing."""
+        return self.spacing
+
+    def global_resolution(self) -> list[int]:
+        """Older name of global_cells."""
+        return self.global_cells
+
+    def cell_centers(self) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+        """Scene coordinates of the cell centres along x, y and z, of length nx, ny and nz.
+
+        >>> x, y, z = Solver((4, 2, 1), extent=(1, 1, 1)).cell_centers()
+        >>> x.tolist()
+        [0.125, 0.375, 0.625, 0.875]
+        """
+        axes = zip(self._origin, self._cells, self._spacing, strict=True)
+        x, y, z = (low + (np.arange(n, dtype=np.float64) + 0.5) * h for low, n, h in axes)
+        return x, y, z
+
+    def ghost_width(self) -> int:
+        """Layers of cells that the solver keeps around the box; no array shows them."""
+        return 2
+
+    def rank(self) -> int:
+        """Number of this process: 0."""
+        return 0
+
+    def size(self) -> int:
+        """Number of processes: 1."""
+        return 1
+
+    # time
+
+    def step(self) -> None:
+        """Advance by one time step.
+
+        Bodies that were moved are sampled anew first. Without any geometry, the box is full of fluid.
+        A RuntimeWarning says when a solve met its cap before its tolerance; see velocity_report and
+        pressure_report. Raises RuntimeError when the flow is not finite.
+        """
+        self._core.step()
+        self._status.has_solid = True
+        self._status.has_loads = True
+        self._status.has_budget = True
+        core = self._core
+        if not self.velocity_report.converged:
+            _warn_cap("velocity", core.velocity_iteration_limit, core.velocity_tolerance)
+        if not self.pressure_report.converged:
+            _warn_cap("pressure", core.pressure_iteration_limit, core.pressure_tolerance)
+
+    @property
+    def time(self) -> float:
+        """Time that the steps so far have covered."""
+        return self._core.time
+
+    @property
+    def number_of_steps(self) -> int:
+        """Steps so far."""
+        return self._core.number_of_steps
+
+    # loads
+
+    def hydro_force_torque_reaction(self) -> NDArray[np.float64]:
+        """Force and torque of the fluid on every body in the last step, shape (2, n, 3).
+
+        [0] are the forces, [1] the torques about the centres of rotation (world axes): what the discrete
+        equations of the fluid lost to each body. Hydrostatic buoyancy is not in it unless the body force
+        is. Shape (2, 0, 3) without a scene; RuntimeError before the first step().
+        """
+        return self._loads("hydro_force_torque_reaction")
+
+    def hydro_force_torque(self) -> NDArray[np.float64]:
+        """Older name of hydro_force_torque_reaction()."""
+        _warn_reaction("hydro_force_torque")
+        return self._loads("hydro_force_torque")
+
+    def force_shares(self) -> dict[str, NDArray[np.float64]]:
+        """Shares of the force on every body, shape (n, 3) each: 'pressure', 'viscous' and 'advective'.
+
+        Their sum is the force of hydro_force_torque_reaction(). 'advective' is the momentum that the flow
+        carries through the wall's control-volume faces; it vanishes for Stokes flow.
+        """
+        force = self._loads("force_shares")[0]
+        pressure, viscous = self._core.pressure_force(), self._core.viscous_force()
+        return {"pressure": pressure, "viscous": viscous, "advective": force - pressure - viscous}
+
+    # the rest
+
+    @property
+    def diagnostics(self) -> SolverDiagnostics:
+        """Instruments: reports, counters and budgets."""
+        return SolverDiagnostics(self._core, self._status, self._cells)
+
+    @property
+    def bytes(self) -> int:
+        """Memory of the solver's arrays."""
+        return self._core.bytes
+
+    def __repr__(self) -> str:
+        sizes = " x ".join(map(str, self._cells))
+        spacing = " x ".join(f"{h:.6g}" for h in self._spacing) if self._physical_units else "1"
+        count = self.num_scene_instances()
+        bodies = f"{count} bod{'y' if count == 1 else 'ies'}"
+        return (
+            f"<Solver: {sizes} cells of size {spacing}, rho {self.density:g}, mu {self.viscosity:g}, "
+            f"dt {self.dt:g}, advection {self.advection_scheme or 'off'}, {bodies}, "
+            f"step {self.number_of_steps}, time {self.time:g}>"
+        )
+
+
+def _warn_cap(solve: str, cap: int, tolerance: float) -> None:
+    # Without the residual: Python shows the same text once, not every step.
+    warnings.warn(
+        f"step(): the {solve} solve met its cap of {cap} iterations before its tolerance {tolerance:g}; "
+        f"{solve}_report has the residual",
+        RuntimeWarning,
+        stacklevel=3,
+    )
+
+
+def _cell_units(nx: Any, ny: Any, nz: Any) -> tuple[list[int], None, list[float]]:
+    cells = [_checks.integer(n, name, 1, _LARGEST) for n, name in ((nx, "nx"), (ny, "ny"), (nz, "nz"))]
+    return cells, None, [-0.5, -0.5, -0.5]
+
+
+def _physical_units(
+    cells: Any, extent: Any = None, origin: Any = None, global_cells: Any = None
+) -> tuple[list[int], tuple[float, ...] | None, Sequence[float]]:
+    numbers = _checks.integers(cells, "cells", 3, 1, _LARGEST)
+    if global_cells is not None and _checks.integers(global_cells, "global_cells", 3, 1) != numbers:
+        raise _checks.wrong_value(
+            "global_cells", f"the same as cells, {numbers}: there is one process", global_cells
+        )
+    if extent is None:
+        if origin is not None:
+            raise _checks.wrong_value("origin", "none without an extent", origin)
+        return _cell_units(*numbers)
+    lengths = _checks.vector(extent, "extent")
+    for axis, length in enumerate(lengths):
+        _checks.positive(length, f"extent[{axis}]")
+    return numbers, lengths, (0.0, 0.0, 0.0) if origin is None else _checks.vector(origin, "origin")
+
+
+def _require_memory(cells: Sequence[int]) -> None:
+    """Where memory is handed out before it exists, too large a grid would end the process."""
+    if _flow.execution_space not in ("OpenMP", "Serial", "Threads") or not hasattr(os, "sysconf"):
+        return
+    needed = cells[0] * cells[1] * cells[2] * _BYTES_PER_CELL
+    present = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    if needed > present:
+        raise MemoryError(
+            f"cells: expected a grid that fits into the {present / 2**30:.0f} GiB of this machine, "
+            f"found {cells[0]} x {cells[1]} x {cells[2]}, which need {needed / 2**30:.0f} GiB or more"
+        )
