@@ -19,6 +19,7 @@ class Field {
   KOKKOS_INLINE_FUNCTION T& operator[](Index n) const { return data_.data()[n]; }
 
   KOKKOS_INLINE_FUNCTION const Layout& layout() const { return layout_; }
+  KOKKOS_INLINE_FUNCTION T* data() const { return data_.data(); }
   const Array<T>& array() const { return data_; }
   bool is_allocated() const { return data_.extent(0) > 0; }
   void fill(T value) const { Kokkos::deep_copy(data_, value); }

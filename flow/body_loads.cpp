@@ -33,8 +33,9 @@ struct AdvectiveTraction {
   KOKKOS_INLINE_FUNCTION static Real outflow(const FaceVector<Real>& v, int c, int d, Index p, Real inverse_spacing) {
     const Layout& layout = v.x.layout();
     const Index own = layout.stride(c), step = layout.stride(d / 2);
-    return d % 2 ? inverse_spacing * momentum_flux_low<Scheme>(v, c, d / 2, p + step, own, step)
-                 : -inverse_spacing * momentum_flux_low<Scheme>(v, c, d / 2, p, own, step);
+    const Real *q = v[c].data(), *carrying = v[d / 2].data();
+    return d % 2 ? inverse_spacing * momentum_flux_low<Scheme>(q, carrying, p + step, own, step)
+                 : -inverse_spacing * momentum_flux_low<Scheme>(q, carrying, p, own, step);
   }
   KOKKOS_INLINE_FUNCTION static Real divergence_part(const FaceVector<Real>& v, int c, Index p, const Real3& inverse_spacing) {
     return v[c][p] * carrier_divergence(v, c, p, inverse_spacing);
@@ -89,9 +90,10 @@ void add_wall_tractions(int c, const MomentumTerms& terms, const SolidSampler& s
 }
 
 void add_wall_pressure(int c, const SolidSampler& solid, const WallRows& rows, const Field<Real>& pressure,
-                       const LoadAdder& adder, const ScatterSum& sums) {
+                       const Field<Real>& divergence, Real implicit_viscosity, const LoadAdder& adder,
+                       const ScatterSum& sums) {
   const WallRows w = rows;
-  const Field<Real> p = pressure;
+  const Field<Real> p = pressure, div = divergence;
   const Grid grid = solid.grid;
   const LoadAdder loads = adder;
   const Real area = grid.cell_volume() / grid.spacing[c];
@@ -103,9 +105,11 @@ void add_wall_pressure(int c, const SolidSampler& solid, const WallRows& rows, c
         const Vec3 high = grid.cell_center(cell[0], cell[1], cell[2]);
         Vec3 low = high;
         low[c] -= grid.spacing[c];
+        const Index m = n - p.layout().stride(c);
         if (w.is_wall(row, 2 * c))
-          loads.add(chunk, w.owner(row, 2 * c), Pressure, c, -area * p[n - p.layout().stride(c)], low);
-        if (w.is_wall(row, 2 * c + 1)) loads.add(chunk, w.owner(row, 2 * c + 1), Pressure, c, area * p[n], high);
+          loads.add(chunk, w.owner(row, 2 * c), Pressure, c, -area * (p[m] + implicit_viscosity * div[m]), low);
+        if (w.is_wall(row, 2 * c + 1))
+          loads.add(chunk, w.owner(row, 2 * c + 1), Pressure, c, area * (p[n] + implicit_viscosity * div[n]), high);
       });
 }
 
@@ -146,10 +150,11 @@ void LoadCollector::add_momentum(int c, const MomentumTerms& terms, const SolidS
 }
 
 void LoadCollector::add_pressure(int c, const SolidSampler& solid, const WallRows& fixed_rows,
-                                 const WallRows& moving_rows, const Field<Real>& pressure) {
+                                 const WallRows& moving_rows, const Field<Real>& pressure,
+                                 const Field<Real>& divergence, Real implicit_viscosity) {
   const LoadAdder adder{sums_.bins(), solid.geometry, bodies_};
-  add_wall_pressure(c, solid, fixed_rows, pressure, adder, sums_);
-  add_wall_pressure(c, solid, moving_rows, pressure, adder, sums_);
+  add_wall_pressure(c, solid, fixed_rows, pressure, divergence, implicit_viscosity, adder, sums_);
+  add_wall_pressure(c, solid, moving_rows, pressure, divergence, implicit_viscosity, adder, sums_);
 }
 
 std::vector<BodyLoad> LoadCollector::finish(const std::vector<Vec3>& spin_resistance) {

@@ -28,9 +28,9 @@ class LoadCollector {
   /// correction: e of component c, ghosts filled. residual_sum: what the viscous solve left over.
   void add_momentum(int c, const MomentumTerms& terms, const SolidSampler& solid, const WallRows& fixed_rows,
                     const WallRows& moving_rows, const Field<Real>& correction, Real residual_sum);
-  /// pressure: the one whose gradient acted in this step, ghosts filled.
+  /// The pressure whose gradient acted in this step is  p + theta mu div F(u*), p the updated one; ghosts filled.
   void add_pressure(int c, const SolidSampler& solid, const WallRows& fixed_rows, const WallRows& moving_rows,
-                    const Field<Real>& pressure);
+                    const Field<Real>& pressure, const Field<Real>& divergence, Real implicit_viscosity);
   /// One load per body. spin_resistance[b] = 2 mu V Omega of body b.
   std::vector<BodyLoad> finish(const std::vector<Vec3>& spin_resistance);
 

@@ -2,38 +2,70 @@
 
 namespace peclet::flow {
 
-void extrapolate_velocity(const RowRanges& rows, const FaceVector<Real>& velocity, const FaceVector<Real>& previous,
-                          Real step_ratio, const FaceVector<Real>& extrapolated) {
-  for (int c = 0; c < 3; ++c) {
-    const Field<Real> u = velocity[c], old = previous[c], v = extrapolated[c];
-    const Real half = 0.5 * step_ratio;
-    for_each_cell(
-        "flow::extrapolate_velocity", rows, KOKKOS_LAMBDA(int i, int j, int k) {
-          const Index p = u.layout()(i, j, k);
-          v[p] = u[p] + half * (u[p] - old[p]);
-        });
-  }
-}
-
 namespace {
+
+/// u + r/2 (u - u_old)
+struct Extrapolation {
+  using Result = Norms;
+  static constexpr bool may_overrun = true;
+  Layout layout;
+  const Real *velocity, *previous;
+  Real* extrapolated;
+  Real half_ratio;
+
+  struct Row {
+    const Real *velocity, *previous;
+    Real* extrapolated;
+    Real half_ratio;
+    KOKKOS_INLINE_FUNCTION Real operator()(int i) const {
+      const Real value = velocity[i] + half_ratio * (velocity[i] - previous[i]);
+      extrapolated[i] = value;
+      return value;
+    }
+  };
+  KOKKOS_INLINE_FUNCTION Row row(int j, int k) const {
+    const Index n = layout(0, j, k);
+    return {velocity + n, previous + n, extrapolated + n, half_ratio};
+  }
+};
+
+/// u + r (u - u_old) + e
+struct Correction {
+  using Result = Nothing;
+  static constexpr bool may_overrun = false;
+  Layout layout;
+  const Real *velocity, *correction;
+  Real* previous;
+  Real ratio;
+
+  struct Row {
+    const Real *velocity, *correction;
+    Real* previous;
+    Real ratio;
+    KOKKOS_INLINE_FUNCTION void operator()(int i) const {
+      previous[i] = velocity[i] + ratio * (velocity[i] - previous[i]) + correction[i];
+    }
+  };
+  KOKKOS_INLINE_FUNCTION Row row(int j, int k) const {
+    const Index n = layout(0, j, k);
+    return {velocity + n, correction + n, previous + n, ratio};
+  }
+};
 
 /// div(v v_c) at face p, conservative form.
 template <class Scheme>
 KOKKOS_INLINE_FUNCTION Real advection_at_face(const FaceVector<Real>& v, int c, Index p, const Real3& inverse_spacing) {
   const Layout& layout = v.x.layout();
   const Index own = layout.stride(c);
+  const Real* q = v[c].data();
   Real divergence = 0;
   for (int a = 0; a < 3; ++a) {
     const Index step = layout.stride(a);
-    divergence += inverse_spacing[a] * (momentum_flux_low<Scheme>(v, c, a, p + step, own, step) -
-                                        momentum_flux_low<Scheme>(v, c, a, p, own, step));
+    const Real* carrying = v[a].data();
+    divergence += inverse_spacing[a] * (momentum_flux_low<Scheme>(q, carrying, p + step, own, step) -
+                                        momentum_flux_low<Scheme>(q, carrying, p, own, step));
   }
   return divergence;
-}
-
-template <>
-KOKKOS_INLINE_FUNCTION Real advection_at_face<NoAdvection>(const FaceVector<Real>&, int, Index, const Real3&) {
-  return 0;
 }
 
 /// div(v v_c) - v_c div(v) at face p. Beside walls the carrying velocity is not solenoidal, because faces are
@@ -46,16 +78,6 @@ KOKKOS_INLINE_FUNCTION Real advection_beside_wall(const FaceVector<Real>& v, int
 template <>
 KOKKOS_INLINE_FUNCTION Real advection_beside_wall<NoAdvection>(const FaceVector<Real>&, int, Index, const Real3&) {
   return 0;
-}
-
-KOKKOS_INLINE_FUNCTION Real laplacian_at_face(const Field<Real>& q, Index p, const Real3& inverse_square) {
-  const Layout& layout = q.layout();
-  Real sum = 0;
-  for (int a = 0; a < 3; ++a) {
-    const Index step = layout.stride(a);
-    sum += inverse_square[a] * (q[p + step] - 2 * q[p] + q[p - step]);
-  }
-  return sum;
 }
 
 KOKKOS_INLINE_FUNCTION Real laplacian_at_wall(const WallRows& rows, Index row, const Field<Real>& q, Index p,
@@ -90,19 +112,62 @@ KOKKOS_INLINE_FUNCTION Real predictor_residual(const MomentumTerms& t, int c, In
          t.step_ratio * change;
 }
 
-template <class Scheme>
-void residual_of_grid(int c, const MomentumTerms& terms, const RowRanges& rows, const Field<Real>& residual) {
-  const MomentumTerms t = terms;
-  const InverseSpacing inverse(terms.grid);
-  const Field<Real> r = residual;
-  for_each_cell(
-      "flow::momentum_residual", rows, KOKKOS_LAMBDA(int i, int j, int k) {
-        const Index p = r.layout()(i, j, k);
-        const Real advection = advection_at_face<Scheme>(t.extrapolated, c, p, inverse.first);
-        const Real laplacian = laplacian_at_face(t.extrapolated[c], p, inverse.square);
-        r[p] = predictor_residual(t, c, p, advection, laplacian, inverse.first[c]);
-      });
-}
+/// Residual of component c on the regular grid; walls are put right afterwards.
+template <class Scheme, int c>
+struct GridResidual {
+  using Result = Nothing;
+  static constexpr bool may_overrun = true;
+  MomentumTerms terms;
+  InverseSpacing inverse;
+  Real* residual;
+
+  struct Row {
+    const Real *q, *vx, *vy, *vz;  // transported and carrying velocities
+    const Real *velocity, *previous, *pressure;
+    Real* residual;
+    Index sy, sz;
+    Real fx, fy, fz;  // dt / h
+    Real dx, dy, dz;  // dt nu / h^2
+    Real pressure_scale, forcing, ratio;
+
+    KOKKOS_INLINE_FUNCTION void operator()(int i) const {
+      const Index own = c == 0 ? 1 : (c == 1 ? sy : sz);
+      const Real advection =
+          fx * (momentum_flux_low<Scheme>(q, vx, i + 1, own, 1) - momentum_flux_low<Scheme>(q, vx, i, own, 1)) +
+          fy * (momentum_flux_low<Scheme>(q, vy, i + sy, own, sy) - momentum_flux_low<Scheme>(q, vy, i, own, sy)) +
+          fz * (momentum_flux_low<Scheme>(q, vz, i + sz, own, sz) - momentum_flux_low<Scheme>(q, vz, i, own, sz));
+      const Real diffusion = dx * (q[i - 1] + q[i + 1]) + dy * (q[i - sy] + q[i + sy]) + dz * (q[i - sz] + q[i + sz]) -
+                             2 * (dx + dy + dz) * q[i];
+      residual[i] = forcing - advection - pressure_scale * (pressure[i] - pressure[i - own]) + diffusion -
+                    ratio * (velocity[i] - previous[i]);
+    }
+  };
+  KOKKOS_INLINE_FUNCTION Row row(int j, int k) const {
+    const Layout& layout = terms.pressure.layout();
+    const Index n = layout(0, j, k);
+    const FaceVector<Real>& v = terms.extrapolated;
+    const Real dt = terms.time_step, diffusion = dt * terms.kinematic_viscosity;
+    return {v[c].data() + n,
+            v.x.data() + n,
+            v.y.data() + n,
+            v.z.data() + n,
+            terms.velocity[c].data() + n,
+            terms.previous[c].data() + n,
+            terms.pressure.data() + n,
+            residual + n,
+            layout.pitch_y,
+            layout.pitch_z,
+            dt * inverse.first[0],
+            dt * inverse.first[1],
+            dt * inverse.first[2],
+            diffusion * inverse.square[0],
+            diffusion * inverse.square[1],
+            diffusion * inverse.square[2],
+            dt * inverse.first[c] / terms.density,
+            dt * terms.acceleration[c],
+            terms.step_ratio};
+  }
+};
 
 template <class Scheme>
 void residual_of_wall_rows(int c, const MomentumTerms& terms, const WallRows& rows, const Field<Real>& residual) {
@@ -120,27 +185,54 @@ void residual_of_wall_rows(int c, const MomentumTerms& terms, const WallRows& ro
       });
 }
 
-template <class Scheme>
-void residual_with_scheme(int c, const MomentumTerms& terms, const RowRanges& rows, const WallRows& fixed_rows,
-                          const WallRows& moving_rows, const Field<Real>& residual) {
-  residual_of_grid<Scheme>(c, terms, rows, residual);
+template <class Scheme, int c>
+void residual_of_component(const MomentumTerms& terms, const SweepPlan& plan, const RowRanges& rows,
+                           const WallRows& fixed_rows, const WallRows& moving_rows, const Field<Real>& residual) {
+  const GridResidual<Scheme, c> body{terms, InverseSpacing(terms.grid), residual.data()};
+  sweep("flow::momentum_residual", plan, Stage{rows, body});
   residual_of_wall_rows<Scheme>(c, terms, fixed_rows, residual);
   residual_of_wall_rows<Scheme>(c, terms, moving_rows, residual);
 }
 
+template <class Scheme>
+void residual_with_scheme(int c, const MomentumTerms& terms, const SweepPlan& plan, const RowRanges& rows,
+                          const WallRows& fixed_rows, const WallRows& moving_rows, const Field<Real>& residual) {
+  if (c == 0) residual_of_component<Scheme, 0>(terms, plan, rows, fixed_rows, moving_rows, residual);
+  if (c == 1) residual_of_component<Scheme, 1>(terms, plan, rows, fixed_rows, moving_rows, residual);
+  if (c == 2) residual_of_component<Scheme, 2>(terms, plan, rows, fixed_rows, moving_rows, residual);
+}
+
 }  // namespace
 
-void compute_momentum_residual(int c, const MomentumTerms& terms, const RowRanges& rows, const WallRows& fixed_rows,
-                               const WallRows& moving_rows, const Field<Real>& residual) {
+Real extrapolate_velocity(const SweepPlan& plan, const RowRanges& rows, const FaceVector<Real>& velocity,
+                          const FaceVector<Real>& previous, Real step_ratio, const FaceVector<Real>& extrapolated) {
+  Real largest = 0;
+  for (int c = 0; c < 3; ++c) {
+    const Extrapolation body{velocity[c].layout(), velocity[c].data(), previous[c].data(), extrapolated[c].data(),
+                             0.5 * step_ratio};
+    const Norms norms = sweep("flow::extrapolate_velocity", plan, Stage{rows, body});
+    largest = norms.largest > largest ? norms.largest : largest;
+  }
+  return largest;
+}
+
+void apply_correction(const SweepPlan& plan, const RowRanges& rows, Real step_ratio, const Field<Real>& velocity,
+                      const Field<Real>& correction, const Field<Real>& previous) {
+  const Correction body{velocity.layout(), velocity.data(), correction.data(), previous.data(), step_ratio};
+  sweep("flow::apply_correction", plan, Stage{rows, body});
+}
+
+void compute_momentum_residual(int c, const MomentumTerms& terms, const SweepPlan& plan, const RowRanges& rows,
+                               const WallRows& fixed_rows, const WallRows& moving_rows, const Field<Real>& residual) {
   switch (terms.scheme) {
     case AdvectionScheme::None:
-      return residual_with_scheme<NoAdvection>(c, terms, rows, fixed_rows, moving_rows, residual);
+      return residual_with_scheme<NoAdvection>(c, terms, plan, rows, fixed_rows, moving_rows, residual);
     case AdvectionScheme::SecondUpwind:
-      return residual_with_scheme<SecondUpwindScheme>(c, terms, rows, fixed_rows, moving_rows, residual);
+      return residual_with_scheme<SecondUpwindScheme>(c, terms, plan, rows, fixed_rows, moving_rows, residual);
     case AdvectionScheme::Koren:
-      return residual_with_scheme<KorenScheme>(c, terms, rows, fixed_rows, moving_rows, residual);
+      return residual_with_scheme<KorenScheme>(c, terms, plan, rows, fixed_rows, moving_rows, residual);
     case AdvectionScheme::Central:
-      return residual_with_scheme<CentralScheme>(c, terms, rows, fixed_rows, moving_rows, residual);
+      return residual_with_scheme<CentralScheme>(c, terms, plan, rows, fixed_rows, moving_rows, residual);
   }
 }
 

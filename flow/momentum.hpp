@@ -6,6 +6,7 @@
 // per step by theta = 9/16 [AscherRuuthWetton1995, modified Crank-Nicolson]. The first step, which has no past, is
 // a step of Euler's method: r = 0, theta = 1.
 #include "core/field.hpp"
+#include "core/sweep.hpp"
 #include "flow/advection_schemes.hpp"
 #include "flow/settings.hpp"
 #include "flow/wall_rows.hpp"
@@ -26,24 +27,34 @@ struct MomentumTerms {
   AdvectionScheme scheme = AdvectionScheme::None;
 };
 
-/// extrapolated = u + r/2 (u - u_old).
-void extrapolate_velocity(const RowRanges& rows, const FaceVector<Real>& velocity, const FaceVector<Real>& previous,
-                          Real step_ratio, const FaceVector<Real>& extrapolated);
+/// extrapolated = u + r/2 (u - u_old); returns its largest component.
+Real extrapolate_velocity(const SweepPlan& plan, const RowRanges& rows, const FaceVector<Real>& velocity,
+                          const FaceVector<Real>& previous, Real step_ratio, const FaceVector<Real>& extrapolated);
+
+/// previous = u + r (u - u_old) + e: the predicted velocity takes the place of the oldest one.
+void apply_correction(const SweepPlan& plan, const RowRanges& rows, Real step_ratio, const Field<Real>& velocity,
+                      const Field<Real>& correction, const Field<Real>& previous);
 
 /// residual = u + dt (-A(v) - grad p / rho + f / rho + nu L v) - (u + r (u - u_old)): what e must balance.
-void compute_momentum_residual(int c, const MomentumTerms& terms, const RowRanges& rows, const WallRows& fixed_rows,
-                               const WallRows& moving_rows, const Field<Real>& residual);
+void compute_momentum_residual(int c, const MomentumTerms& terms, const SweepPlan& plan, const RowRanges& rows,
+                               const WallRows& fixed_rows, const WallRows& moving_rows, const Field<Real>& residual);
 
 
 /// No flux: Stokes flow.
 struct NoAdvection {};
 
-/// Mass flux through the low control-volume face of component c along axis a, times the carried velocity.
+/// Flux of the transported velocity q through the low face of its control volume along an axis: mean of the
+/// carrying velocity of the two points beside the face, times the value that the scheme carries.
+/// own and step: steps of the linear index along the axis of q and along the axis of the face.
 template <class Scheme>
-KOKKOS_INLINE_FUNCTION Real momentum_flux_low(const FaceVector<Real>& v, int c, int a, Index p, Index own, Index step) {
-  const Field<Real>& q = v[c];
-  const Real carrier = 0.5 * (v[a][p - own] + v[a][p]);
+KOKKOS_INLINE_FUNCTION Real momentum_flux_low(const Real* q, const Real* carrying, Index p, Index own, Index step) {
+  const Real carrier = 0.5 * (carrying[p - own] + carrying[p]);
   return carrier * carried_value<Scheme>(carrier, q[p - 2 * step], q[p - step], q[p], q[p + step]);
+}
+
+template <>
+KOKKOS_INLINE_FUNCTION Real momentum_flux_low<NoAdvection>(const Real*, const Real*, Index, Index, Index) {
+  return 0;
 }
 
 /// Divergence of the carrying velocity in the control volume of face p.

@@ -1,54 +1,119 @@
 #include "flow/projection.hpp"
 
+#include <algorithm>
+
 namespace peclet::flow {
+namespace {
 
-void compute_divergence(const Grid& grid, const RowRanges& rows, const FaceVector<OpenFraction>& open,
-                        const CutCells& cut_cells, const FaceVector<Real>& velocity, const Field<Real>& divergence) {
-  const FaceVector<OpenFraction> o = open;
-  const FaceVector<Real> u = velocity;
-  const Field<Real> result = divergence;
-  const Real3 scale{open_fraction_unit / grid.spacing[0], open_fraction_unit / grid.spacing[1],
-                    open_fraction_unit / grid.spacing[2]};
-  for_each_cell(
-      "flow::compute_divergence", rows, KOKKOS_LAMBDA(int i, int j, int k) {
-        const Index p = result.layout()(i, j, k);
-        const Index y = p + result.layout().pitch_y, z = p + result.layout().pitch_z;
-        result[p] = scale[0] * (o.x[p + 1] * u.x[p + 1] - o.x[p] * u.x[p]) +
-                    scale[1] * (o.y[y] * u.y[y] - o.y[p] * u.y[p]) + scale[2] * (o.z[z] * u.z[z] - o.z[p] * u.z[p]);
-      });
+struct Divergence {
+  using Result = Norms;
+  static constexpr bool may_overrun = true;
+  Layout layout;
+  const OpenFraction *open_x, *open_y, *open_z;
+  const Real *u, *v, *w;
+  Real* result;
+  Real3 scale;
+
+  struct Row {
+    const OpenFraction *ox, *oy, *oz;
+    const Real *u, *v, *w;
+    Real* result;
+    Index sy, sz;
+    Real fx, fy, fz;
+
+    KOKKOS_INLINE_FUNCTION static Real flux(const OpenFraction* open, const Real* velocity, Index n) {
+      return static_cast<Real>(open[n]) * velocity[n];
+    }
+    KOKKOS_INLINE_FUNCTION Real operator()(int i) const {
+      const Real divergence = fx * (flux(ox, u, i + 1) - flux(ox, u, i)) + fy * (flux(oy, v, i + sy) - flux(oy, v, i)) +
+                              fz * (flux(oz, w, i + sz) - flux(oz, w, i));
+      result[i] = divergence;
+      return divergence;
+    }
+  };
+  KOKKOS_INLINE_FUNCTION Row row(int j, int k) const {
+    const Index n = layout(0, j, k);
+    return {open_x + n, open_y + n,     open_z + n,     u + n,    v + n,    w + n,
+            result + n, layout.pitch_y, layout.pitch_z, scale[0], scale[1], scale[2]};
+  }
+};
+
+struct Projection {
+  using Result = Nothing;
+  static constexpr bool may_overrun = false;
+  Layout layout;
+  const OpenFraction *open_x, *open_y, *open_z;
+  const Real *potential, *divergence;
+  Real *u, *v, *w, *pressure;
+  Real3 inverse_spacing;
+  Real density_over_time_step, implicit_viscosity;
+
+  struct Row {
+    const OpenFraction *ox, *oy, *oz;
+    const Real *phi, *divergence;
+    Real *u, *v, *w, *pressure;
+    Index sy, sz;
+    Real fx, fy, fz, density_over_time_step, implicit_viscosity;
+
+    KOKKOS_INLINE_FUNCTION void operator()(int i) const {
+      const Real here = phi[i];
+      const Real x = u[i] - fx * (here - phi[i - 1]);
+      const Real y = v[i] - fy * (here - phi[i - sy]);
+      const Real z = w[i] - fz * (here - phi[i - sz]);
+      u[i] = ox[i] ? x : 0.0;
+      v[i] = oy[i] ? y : 0.0;
+      w[i] = oz[i] ? z : 0.0;
+      pressure[i] += density_over_time_step * here - implicit_viscosity * divergence[i];
+    }
+  };
+  KOKKOS_INLINE_FUNCTION Row row(int j, int k) const {
+    const Index n = layout(0, j, k);
+    return {open_x + n,         open_y + n,         open_z + n,
+            potential + n,      divergence + n,     u + n,
+            v + n,              w + n,              pressure + n,
+            layout.pitch_y,     layout.pitch_z,     inverse_spacing[0],
+            inverse_spacing[1], inverse_spacing[2], density_over_time_step,
+            implicit_viscosity};
+  }
+};
+
+}  // namespace
+
+Real compute_divergence(const Grid& grid, const SweepPlan& plan, const RowRanges& rows,
+                        const FaceVector<OpenFraction>& open, const CutCells& cut_cells,
+                        const FaceVector<Real>& velocity, const Field<Real>& divergence) {
+  Divergence body{divergence.layout(), open.x.data(),     open.y.data(),     open.z.data(),    velocity.x.data(),
+                  velocity.y.data(),   velocity.z.data(), divergence.data(), Real3{0, 0, 0}};
+  for (int a = 0; a < 3; ++a) body.scale[a] = open_fraction_unit / grid.spacing[a];
+  const Norms norms = sweep("flow::compute_divergence", plan, Stage{rows, body});
   const CutCells cut = cut_cells;
-  for_each(
-      "flow::add_wall_flux", cut.count, KOKKOS_LAMBDA(Index n) { result[cut.cell(n)] += cut.wall_flux(n); });
+  const Field<Real> result = divergence;
+  const Real at_walls = max_each(
+      "flow::add_wall_flux", cut.count, KOKKOS_LAMBDA(Index n) {
+        const Real sum = result[cut.cell(n)] + cut.wall_flux(n);
+        result[cut.cell(n)] = sum;
+        return Kokkos::abs(sum);
+      });
+  return std::max(norms.largest, at_walls);
 }
 
-void subtract_gradient(const Grid& grid, const RowRanges& rows, const FaceVector<OpenFraction>& open,
-                       const Field<Real>& phi, const FaceVector<Real>& velocity) {
-  const FaceVector<OpenFraction> o = open;
-  const FaceVector<Real> u = velocity;
-  const Field<Real> potential = phi;
-  const Real3 inverse{1 / grid.spacing[0], 1 / grid.spacing[1], 1 / grid.spacing[2]};
-  for_each_cell(
-      "flow::subtract_gradient", rows, KOKKOS_LAMBDA(int i, int j, int k) {
-        const Index p = potential.layout()(i, j, k);
-        const Index y = p - potential.layout().pitch_y, z = p - potential.layout().pitch_z;
-        const Real here = potential[p];
-        const Real ux = u.x[p] - inverse[0] * (here - potential[p - 1]);
-        const Real uy = u.y[p] - inverse[1] * (here - potential[y]);
-        const Real uz = u.z[p] - inverse[2] * (here - potential[z]);
-        u.x[p] = o.x[p] ? ux : 0.0;
-        u.y[p] = o.y[p] ? uy : 0.0;
-        u.z[p] = o.z[p] ? uz : 0.0;
-      });
-}
-
-void update_pressure(const RowRanges& rows, Real density_over_time_step, Real implicit_viscosity,
-                     const Field<Real>& phi, const Field<Real>& divergence, const Field<Real>& pressure) {
-  const Field<Real> p = pressure, potential = phi, div = divergence;
-  for_each_cell(
-      "flow::update_pressure", rows, KOKKOS_LAMBDA(int i, int j, int k) {
-        const Index n = p.layout()(i, j, k);
-        p[n] += density_over_time_step * potential[n] - implicit_viscosity * div[n];
-      });
+void apply_projection(const Grid& grid, const SweepPlan& plan, const RowRanges& rows,
+                      const FaceVector<OpenFraction>& open, const ProjectionUpdate& update,
+                      const FaceVector<Real>& velocity, const Field<Real>& pressure) {
+  const Projection body{pressure.layout(),
+                        open.x.data(),
+                        open.y.data(),
+                        open.z.data(),
+                        update.potential.data(),
+                        update.divergence.data(),
+                        velocity.x.data(),
+                        velocity.y.data(),
+                        velocity.z.data(),
+                        pressure.data(),
+                        Real3{1 / grid.spacing[0], 1 / grid.spacing[1], 1 / grid.spacing[2]},
+                        update.density_over_time_step,
+                        update.implicit_viscosity};
+  sweep("flow::apply_projection", plan, Stage{rows, body});
 }
 
 }  // namespace peclet::flow

@@ -33,17 +33,6 @@ constexpr Real divergence_rounding = 1e-13;
 /// Largest divergence after the projection, relative to velocity / spacing.
 constexpr Real divergence_limit = 3e-9;
 
-/// previous = u + r (u - u_old) + e: the predicted velocity takes the place of the oldest one.
-void apply_correction(const RowRanges& rows, Real step_ratio, const Field<Real>& velocity, const Field<Real>& correction,
-                      const Field<Real>& previous) {
-  const Field<Real> u = velocity, e = correction, old = previous;
-  for_each_cell(
-      "flow::apply_correction", rows, KOKKOS_LAMBDA(int i, int j, int k) {
-        const Index p = u.layout()(i, j, k);
-        old[p] = u[p] + step_ratio * (u[p] - old[p]) + e[p];
-      });
-}
-
 Real largest_component(const RowRanges& rows, const FaceVector<Real>& velocity) {
   const FaceVector<Real> u = velocity;
   return max_cells(
@@ -53,12 +42,6 @@ Real largest_component(const RowRanges& rows, const FaceVector<Real>& velocity) 
         const Real larger = x > y ? x : y;
         return larger > z ? larger : z;
       });
-}
-
-Real largest_magnitude(const RowRanges& rows, const Field<Real>& field) {
-  const Field<Real> f = field;
-  return max_cells(
-      "flow::largest_magnitude", rows, KOKKOS_LAMBDA(int i, int j, int k) { return Kokkos::abs(f(i, j, k)); });
 }
 
 /// Zero on closed faces.
@@ -138,7 +121,7 @@ void Solver::build_geometry(bool keep_flow) {
     requested.reset();
   }
   boundary_.build(bodies_, samples_);
-  pressure_solver_.set_open_fractions(boundary_.open(), boundary_.rows());
+  geometry_rebuilt();
   if (!keep_flow) {
     for (int c = 0; c < 3; ++c) velocity_[c].fill(0);
     pressure_.fill(0);
@@ -148,6 +131,11 @@ void Solver::build_geometry(bool keep_flow) {
   geometry_stale_ = false;
   wall_velocity_stale_ = false;
   velocity_changed();
+}
+
+void Solver::geometry_rebuilt() {
+  pressure_solver_.set_open_fractions(boundary_.open(), boundary_.rows());
+  plan_ = SweepPlan(grid_.cells, boundary_.rows().box, periodic_.axis);
 }
 
 void Solver::velocity_changed() {
@@ -185,7 +173,7 @@ void Solver::promote_moved_bodies() {
   }
   if (!promoted || !built_) return;
   boundary_.build(bodies_, samples_);
-  pressure_solver_.set_open_fractions(boundary_.open(), boundary_.rows());
+  geometry_rebuilt();
 }
 
 void Solver::update_geometry() {
@@ -242,13 +230,13 @@ void Solver::step() {
   times_.geometry = geometry_time;
 
   const MomentumTerms terms = momentum_terms();
-  extrapolate_velocity(boundary_.rows(), velocity_, previous_, terms.step_ratio, extrapolated_);
+  const Real velocity_scale =
+      extrapolate_velocity(plan_, boundary_.rows(), velocity_, previous_, terms.step_ratio, extrapolated_);
   for (int c = 0; c < 3; ++c) {
     impose_body_velocity(boundary_.body_faces(c), extrapolated_[c]);
     fill_periodic_ghosts(extrapolated_[c], periodic_);
   }
   fill_periodic_ghosts(pressure_, periodic_, 1);
-  const Real velocity_scale = largest_component(boundary_.rows(), extrapolated_);
 
   predict_velocity(terms, velocity_scale);
   std::swap(velocity_, previous_);  // velocity_ is now the predicted one
@@ -268,13 +256,14 @@ void Solver::predict_velocity(const MomentumTerms& terms, Real velocity_scale) {
     const Field<Real>& correction = divergence_;  // free until the projection
     ViscousSystem system{grid_,
                          terms.implicit_weight * terms.time_step * terms.kinematic_viscosity,
+                         &plan_,
                          boundary_.rows(),
                          boundary_.open()[c],
                          fixed_rows,
                          moving_rows};
     {
       const Stopwatch watch(times_.momentum);
-      compute_momentum_residual(c, terms, boundary_.rows(), fixed_rows, moving_rows, residual_);
+      compute_momentum_residual(c, terms, plan_, boundary_.rows(), fixed_rows, moving_rows, residual_);
     }
     {
       const Stopwatch watch(times_.viscous);
@@ -291,7 +280,7 @@ void Solver::predict_velocity(const MomentumTerms& terms, Real velocity_scale) {
       const Stopwatch load_watch(times_.loads);
       load_collector_.add_momentum(c, terms, boundary_.solid(), fixed_rows, moving_rows, correction, left_over);
     }
-    apply_correction(boundary_.rows(), terms.step_ratio, velocity_[c], correction, previous_[c]);
+    apply_correction(plan_, boundary_.rows(), terms.step_ratio, velocity_[c], correction, previous_[c]);
   }
 }
 
@@ -300,11 +289,11 @@ void Solver::project_velocity(Real velocity_scale, Real implicit_weight) {
     impose_body_velocity(boundary_.body_faces(c), velocity_[c]);
     fill_periodic_ghosts(velocity_[c], periodic_, 1);
   }
-  compute_divergence(grid_, boundary_.rows(), boundary_.open(), boundary_.cut_cells(), velocity_, divergence_);
+  const Real largest = compute_divergence(grid_, plan_, boundary_.rows(), boundary_.open(), boundary_.cut_cells(),
+                                          velocity_, divergence_);
   {
     const Stopwatch watch(times_.pressure);
-    const Real scale = std::max(velocity_scale, largest_component(boundary_.rows(), velocity_)) / smallest_spacing(grid_);
-    const Real largest = largest_magnitude(boundary_.rows(), divergence_);
+    const Real scale = std::max(velocity_scale / smallest_spacing(grid_), largest);
     PressureSettings limits;
     limits.max_iterations = settings_.pressure_iteration_limit;
     limits.relative_tolerance = settings_.pressure_tolerance;
@@ -315,10 +304,11 @@ void Solver::project_velocity(Real velocity_scale, Real implicit_weight) {
     require_state(std::isfinite(report.residual), "step(): the pressure solve met a value that is not finite");
     pressure_report_ = {report.iterations, report.residual, report.converged};
   }
-  subtract_gradient(grid_, boundary_.rows(), boundary_.open(), potential_, velocity_);
-  const Real density_over_time_step = settings_.density / settings_.time_step;
-  update_pressure(boundary_.rows(), density_over_time_step, 0, potential_, divergence_, pressure_);
+  const ProjectionUpdate update{settings_.density / settings_.time_step, implicit_weight * settings_.viscosity,
+                                potential_, divergence_};
+  apply_projection(grid_, plan_, boundary_.rows(), boundary_.open(), update, velocity_, pressure_);
   fill_periodic_ghosts(pressure_, periodic_, 1);
+  fill_periodic_ghosts(divergence_, periodic_, 1);
   {
     const Stopwatch watch(times_.loads);
     std::vector<Vec3> spin_resistance(static_cast<std::size_t>(bodies_.count()));
@@ -329,10 +319,10 @@ void Solver::project_velocity(Real velocity_scale, Real implicit_weight) {
       spin_resistance[static_cast<std::size_t>(b)] = 2 * settings_.viscosity * volume * spin;
     }
     for (int c = 0; c < 3; ++c)
-      load_collector_.add_pressure(c, boundary_.solid(), boundary_.fixed_rows(c), boundary_.moving_rows(c), pressure_);
+      load_collector_.add_pressure(c, boundary_.solid(), boundary_.fixed_rows(c), boundary_.moving_rows(c), pressure_,
+                                   divergence_, update.implicit_viscosity);
     loads_ = load_collector_.finish(spin_resistance);
   }
-  update_pressure(boundary_.rows(), 0, implicit_weight * settings_.viscosity, potential_, divergence_, pressure_);
 }
 
 const std::vector<BodyLoad>& Solver::loads() const {
@@ -343,7 +333,7 @@ const std::vector<BodyLoad>& Solver::loads() const {
 Real Solver::largest_open_divergence() {
   if (geometry_stale_) update_geometry();
   for (int c = 0; c < 3; ++c) fill_periodic_ghosts(velocity_[c], periodic_, 1);
-  compute_divergence(grid_, boundary_.rows(), boundary_.open(), boundary_.cut_cells(), velocity_, divergence_);
+  compute_divergence(grid_, plan_, boundary_.rows(), boundary_.open(), boundary_.cut_cells(), velocity_, divergence_);
   return divergence_in_open_cells(boundary_.rows(), boundary_.open(), divergence_);
 }
 

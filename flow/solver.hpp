@@ -71,6 +71,7 @@ class Solver {
   void project_velocity(Real velocity_scale, Real implicit_weight);
   void impose_body_motion();
   void promote_moved_bodies();
+  void geometry_rebuilt();
   MomentumTerms momentum_terms() const;
 
   Grid grid_;
@@ -81,6 +82,7 @@ class Solver {
   Bodies bodies_;
   std::vector<std::optional<Pose>> requested_poses_;
   ImmersedBoundary boundary_;
+  SweepPlan plan_;
   bool geometry_stale_ = true, wall_velocity_stale_ = false, built_ = false;
 
   FaceVector<Real> velocity_, previous_, extrapolated_;

@@ -14,136 +14,187 @@ constexpr int sweeps_per_cycle_limit = 40;
 /// Reduction that single-precision sweeps can deliver in one cycle.
 constexpr Real cycle_reduction_limit = 1e-5;
 
+template <class T>
 struct Diffusion {
-  float along[3];
-  float inverse_diagonal;
+  T x, y, z;  // theta dt nu / h^2
+  T diagonal;
+
+  explicit Diffusion(const ViscousSystem& system) {
+    T along[3];
+    for (int a = 0; a < 3; ++a)
+      along[a] = static_cast<T>(system.diffusion / (system.grid.spacing[a] * system.grid.spacing[a]));
+    x = along[0];
+    y = along[1];
+    z = along[2];
+    diagonal = 1 + 2 * (x + y + z);
+  }
+  KOKKOS_INLINE_FUNCTION T along(int axis) const { return axis == 0 ? x : (axis == 1 ? y : z); }
 };
 
-Diffusion diffusion_of(const ViscousSystem& system) {
-  Diffusion d{};
-  Real diagonal = 1;
-  for (int a = 0; a < 3; ++a) {
-    const Real number = system.diffusion / (system.grid.spacing[a] * system.grid.spacing[a]);
-    d.along[a] = static_cast<float>(number);
-    diagonal += 2 * number;
+/// First sweep from e = 0: e = scale * residual.
+struct FirstSweep {
+  using Result = Nothing;
+  static constexpr bool may_overrun = true;
+  Layout layout;
+  const Real* residual;
+  float* e;
+  float scale;
+
+  struct Row {
+    const Real* residual;
+    float* e;
+    float scale;
+    KOKKOS_INLINE_FUNCTION void operator()(int i) const { e[i] = scale * static_cast<float>(residual[i]); }
+  };
+  KOKKOS_INLINE_FUNCTION Row row(int j, int k) const {
+    const Index n = layout(0, j, k);
+    return {residual + n, e + n, scale};
   }
-  d.inverse_diagonal = static_cast<float>(1 / diagonal);
-  return d;
+};
+
+/// next = (1 - weight) e + scale (residual + neighbours).
+struct Sweep {
+  using Result = Nothing;
+  static constexpr bool may_overrun = true;
+  Layout layout;
+  const Real* residual;
+  const float* e;
+  float* next;
+  Diffusion<float> d;
+  float keep, scale;
+
+  struct Row {
+    const Real* residual;
+    const float* e;
+    float* next;
+    Index sy, sz;
+    float x, y, z, keep, scale;
+    KOKKOS_INLINE_FUNCTION void operator()(int i) const {
+      const float neighbors = x * (e[i - 1] + e[i + 1]) + y * (e[i - sy] + e[i + sy]) + z * (e[i - sz] + e[i + sz]);
+      next[i] = keep * e[i] + scale * (static_cast<float>(residual[i]) + neighbors);
+    }
+  };
+  KOKKOS_INLINE_FUNCTION Row row(int j, int k) const {
+    const Index n = layout(0, j, k);
+    return {residual + n, e + n, next + n, layout.pitch_y, layout.pitch_z, d.x, d.y, d.z, keep, scale};
+  }
+};
+
+/// residual -= A e and correction += e (or = e) in double precision.
+struct Accumulate {
+  using Result = Nothing;
+  static constexpr bool may_overrun = false;
+  Layout layout;
+  const float* e;
+  Real *residual, *correction;
+  Diffusion<Real> d;
+  bool is_first;
+
+  struct Row {
+    const float* e;
+    Real *residual, *correction;
+    Index sy, sz;
+    Real x, y, z, diagonal;
+    bool is_first;
+    KOKKOS_INLINE_FUNCTION void operator()(int i) const {
+      const Real here = e[i];
+      const Real neighbors = x * (Real{e[i - 1]} + Real{e[i + 1]}) + y * (Real{e[i - sy]} + Real{e[i + sy]}) +
+                             z * (Real{e[i - sz]} + Real{e[i + sz]});
+      residual[i] += neighbors - diagonal * here;
+      correction[i] = is_first ? here : correction[i] + here;
+    }
+  };
+  KOKKOS_INLINE_FUNCTION Row row(int j, int k) const {
+    const Index n = layout(0, j, k);
+    return {e + n, residual + n, correction + n, layout.pitch_y, layout.pitch_z, d.x, d.y, d.z, d.diagonal, is_first};
+  }
+};
+
+/// The residual of fluid points.
+struct FluidResidual {
+  using Result = Norms;
+  static constexpr bool may_overrun = true;
+  Layout layout;
+  const OpenFraction* open;
+  const Real* residual;
+
+  struct Row {
+    const OpenFraction* open;
+    const Real* residual;
+    KOKKOS_INLINE_FUNCTION Real operator()(int i) const { return open[i] ? residual[i] : 0.0; }
+  };
+  KOKKOS_INLINE_FUNCTION Row row(int j, int k) const {
+    const Index n = layout(0, j, k);
+    return {open + n, residual + n};
+  }
+};
+
+Norms residual_norms(const ViscousSystem& system, const Field<Real>& residual) {
+  const FluidResidual body{residual.layout(), system.open.data(), residual.data()};
+  return sweep("flow::viscous_residual_norm", *system.plan, Stage{system.rows, body});
 }
 
-/// First sweep from e = 0.
-void start_sweep(const ViscousSystem& system, const Field<Real>& residual, float weight, const Field<float>& e) {
-  const float scale = weight * diffusion_of(system).inverse_diagonal;
-  for_each_cell(
-      "flow::viscous_start", system.rows, KOKKOS_LAMBDA(int i, int j, int k) {
-        const Index p = e.layout()(i, j, k);
-        e[p] = scale * static_cast<float>(residual[p]);
-      });
-}
-
-/// next = e + weight D^-1 (residual - A e) on the regular grid.
-void sweep(const ViscousSystem& system, const Field<Real>& residual, float weight, const Field<float>& e,
-           const Field<float>& next) {
-  const Diffusion d = diffusion_of(system);
-  const float scale = weight * d.inverse_diagonal;
-  const float keep = 1 - weight;
-  for_each_cell(
-      "flow::viscous_sweep", system.rows, KOKKOS_LAMBDA(int i, int j, int k) {
-        const Index p = e.layout()(i, j, k);
-        const Index sy = e.layout().pitch_y, sz = e.layout().pitch_z;
-        const float neighbors = d.along[0] * (e[p - 1] + e[p + 1]) + d.along[1] * (e[p - sy] + e[p + sy]) +
-                                d.along[2] * (e[p - sz] + e[p + sz]);
-        next[p] = keep * e[p] + scale * (static_cast<float>(residual[p]) + neighbors);
-      });
-}
-
-/// Row of a wall: sum of weighted neighbours and diagonal of 1 - diffusion L.
+/// Row of a wall in (1 - theta dt nu L): sum of weighted fluid neighbours and diagonal.
 template <class T>
-KOKKOS_INLINE_FUNCTION void wall_row(const WallRows& rows, Index row, const Field<float>& e, const T (&along)[3], T& neighbors,
-                                     T& diagonal) {
-  const Index p = rows.face(row);
-  neighbors = 0;
-  diagonal = 1;
-  for (int d = 0; d < WallRows::directions; ++d) {
-    const T coefficient = along[d / 2] * static_cast<T>(rows.weight(row, d));
-    const Index step = e.layout().stride(d / 2);
-    diagonal += coefficient;
-    if (!rows.is_wall(row, d)) neighbors += coefficient * static_cast<T>(e[d % 2 ? p + step : p - step]);
+struct WallRow {
+  T neighbors = 0, diagonal = 1;
+
+  KOKKOS_INLINE_FUNCTION WallRow(const WallRows& rows, Index row, const Field<float>& e, const Diffusion<T>& diffusion) {
+    const Index p = rows.face(row);
+    for (int d = 0; d < WallRows::directions; ++d) {
+      const T coefficient = diffusion.along(d / 2) * static_cast<T>(rows.weight(row, d));
+      const Index step = e.layout().stride(d / 2);
+      diagonal += coefficient;
+      if (!rows.is_wall(row, d)) neighbors += coefficient * static_cast<T>(e[d % 2 ? p + step : p - step]);
+    }
   }
+};
+
+/// First sweep from e = 0 at walls.
+void start_wall_rows(const ViscousSystem& system, const WallRows& rows, const Field<Real>& residual, float weight,
+                     const Field<float>& e) {
+  const Diffusion<float> diffusion(system);
+  const WallRows w = rows;
+  for_each(
+      "flow::viscous_start_walls", rows.count, KOKKOS_LAMBDA(Index row) {
+        if (w.superseded(row)) return;
+        float diagonal = 1;
+        for (int d = 0; d < WallRows::directions; ++d) diagonal += diffusion.along(d / 2) * w.weight(row, d);
+        const Index p = w.face(row);
+        e[p] = weight * static_cast<float>(residual[p]) / diagonal;
+      });
 }
 
 void sweep_wall_rows(const ViscousSystem& system, const WallRows& rows, const Field<Real>& residual, float weight,
                      const Field<float>& e, const Field<float>& next) {
-  const Diffusion diffusion = diffusion_of(system);
+  const Diffusion<float> diffusion(system);
   const WallRows w = rows;
   for_each(
       "flow::viscous_sweep_walls", rows.count, KOKKOS_LAMBDA(Index row) {
         if (w.superseded(row)) return;
         const Index p = w.face(row);
-        float neighbors, diagonal;
-        wall_row(w, row, e, diffusion.along, neighbors, diagonal);
-        next[p] = e[p] + weight * ((static_cast<float>(residual[p]) + neighbors) / diagonal - e[p]);
+        const WallRow<float> wall(w, row, e, diffusion);
+        next[p] = e[p] + weight * ((static_cast<float>(residual[p]) + wall.neighbors) / wall.diagonal - e[p]);
       });
 }
 
-/// residual -= A e in double precision.
-void subtract_operator(const ViscousSystem& system, const Field<float>& e, const Field<Real>& residual,
-                       const Field<Real>& correction) {
-  Real3 along;
-  Real diagonal = 1;
-  for (int a = 0; a < 3; ++a) {
-    along[a] = system.diffusion / (system.grid.spacing[a] * system.grid.spacing[a]);
-    diagonal += 2 * along[a];
-  }
-  const Field<Real> r = residual, total = correction;
-  for_each_cell(
-      "flow::viscous_residual", system.rows, KOKKOS_LAMBDA(int i, int j, int k) {
-        const Index p = e.layout()(i, j, k);
-        const Index sy = e.layout().pitch_y, sz = e.layout().pitch_z;
-        const Real here = e[p];
-        const Real neighbors = along[0] * (Real{e[p - 1]} + Real{e[p + 1]}) +
-                               along[1] * (Real{e[p - sy]} + Real{e[p + sy]}) +
-                               along[2] * (Real{e[p - sz]} + Real{e[p + sz]});
-        r[p] += neighbors - diagonal * here;
-        total[p] += here;
-      });
-}
-
-/// The same at wall rows, where the regular formula above was not the operator: undone and done right.
-void subtract_operator_at_walls(const ViscousSystem& system, const WallRows& rows, const Field<float>& e,
-                                const Field<Real>& residual) {
-  Real along[3];
-  Real regular_diagonal = 1;
-  for (int a = 0; a < 3; ++a) {
-    along[a] = system.diffusion / (system.grid.spacing[a] * system.grid.spacing[a]);
-    regular_diagonal += 2 * along[a];
-  }
-  const Real along_x = along[0], along_y = along[1], along_z = along[2];
+/// At wall rows the regular formula was not the operator: undone and done right.
+void correct_residual_at_walls(const ViscousSystem& system, const WallRows& rows, const Field<float>& e,
+                               const Field<Real>& residual) {
+  const Diffusion<Real> diffusion(system);
   const WallRows w = rows;
   const Field<Real> r = residual;
   for_each(
       "flow::viscous_residual_walls", rows.count, KOKKOS_LAMBDA(Index row) {
         if (w.superseded(row)) return;
         const Index p = w.face(row);
-        const Real per_axis[3] = {along_x, along_y, along_z};
-        Real neighbors, diagonal;
-        wall_row(w, row, e, per_axis, neighbors, diagonal);
+        const WallRow<Real> wall(w, row, e, diffusion);
         Real regular = 0;
         for (int d = 0; d < WallRows::directions; ++d) {
           const Index step = e.layout().stride(d / 2);
-          regular += per_axis[d / 2] * Real{e[d % 2 ? p + step : p - step]};
+          regular += diffusion.along(d / 2) * Real{e[d % 2 ? p + step : p - step]};
         }
-        r[p] += (neighbors - regular) - (diagonal - regular_diagonal) * Real{e[p]};
-      });
-}
-
-MaxAndSum residual_norms(const ViscousSystem& system, const Field<Real>& residual) {
-  const Field<OpenFraction> open = system.open;
-  const Field<Real> r = residual;
-  return max_and_sum_cells(
-      "flow::viscous_residual_norm", system.rows, KOKKOS_LAMBDA(int i, int j, int k) {
-        const Index p = r.layout()(i, j, k);
-        return open[p] ? r[p] : 0.0;
+        r[p] += (wall.neighbors - regular) - (wall.diagonal - diffusion.diagonal) * Real{e[p]};
       });
 }
 
@@ -174,40 +225,51 @@ SolverReport ViscousSolver::solve(const ViscousSystem& system, const Periodicity
   for (int a = 0; a < 3; ++a) spread += 2 * system.diffusion / (system.grid.spacing[a] * system.grid.spacing[a]);
   const Real s = spread / (1 + spread);
 
-  correction.fill(0);
   SolverReport report;
-  MaxAndSum norms = residual_norms(system, residual);
-  const Real scale = std::max(velocity_scale, norms.max);
+  Norms norms = residual_norms(system, residual);
+  const Real scale = std::max(velocity_scale, norms.largest);
   const Real tolerance = relative_tolerance * scale;
-  while (norms.max > tolerance && report.iterations < iteration_limit) {
-    const Real reduction = std::clamp(0.5 * tolerance / norms.max, cycle_reduction_limit, 0.5);
-    const int sweeps = std::min({chebyshev_sweeps(s, reduction), sweeps_per_cycle_limit,
-                                 iteration_limit - report.iterations});
-    start_sweep(system, residual, chebyshev_weight(0, sweeps, s), iterate_);
-    next_.fill(0);
-    // from zero, a wall row differs from the regular one by its diagonal only
-    sweep_wall_rows(system, system.fixed_rows, residual, chebyshev_weight(0, sweeps, s), next_, iterate_);
-    sweep_wall_rows(system, system.moving_rows, residual, chebyshev_weight(0, sweeps, s), next_, iterate_);
-    for (int m = 1; m < sweeps; ++m) {
-      const float weight = chebyshev_weight(m, sweeps, s);
-      fill_periodic_ghosts(iterate_, periodic, 1);
-      sweep(system, residual, weight, iterate_, next_);
-      sweep_wall_rows(system, system.fixed_rows, residual, weight, iterate_, next_);
-      sweep_wall_rows(system, system.moving_rows, residual, weight, iterate_, next_);
-      std::swap(iterate_, next_);
-    }
-    fill_periodic_ghosts(iterate_, periodic, 1);
-    subtract_operator(system, iterate_, residual, correction);
-    subtract_operator_at_walls(system, system.fixed_rows, iterate_, residual);
-    subtract_operator_at_walls(system, system.moving_rows, iterate_, residual);
+  bool is_first = true;
+  while (is_first || (norms.largest > tolerance && report.iterations < iteration_limit && std::isfinite(norms.sum))) {
+    const Real wanted = norms.largest > 0 ? 0.5 * tolerance / norms.largest : 0.5;
+    const int sweeps = std::min({chebyshev_sweeps(s, std::clamp(wanted, cycle_reduction_limit, 0.5)),
+                                 sweeps_per_cycle_limit, iteration_limit - report.iterations});
+    run_sweeps(system, periodic, residual, sweeps, s);
+    const Accumulate body{residual.layout(), iterate_.data(),         residual.data(),
+                          correction.data(), Diffusion<Real>(system), is_first};
+    sweep("flow::viscous_residual", *system.plan, Stage{system.rows, body});
+    correct_residual_at_walls(system, system.fixed_rows, iterate_, residual);
+    correct_residual_at_walls(system, system.moving_rows, iterate_, residual);
     report.iterations += sweeps;
     norms = residual_norms(system, residual);
-    if (!std::isfinite(norms.sum)) break;
+    is_first = false;
   }
-  report.residual = scale > 0 ? norms.max / scale : 0;
-  report.converged = norms.max <= tolerance;
+  report.residual = scale > 0 ? norms.largest / scale : 0;
+  report.converged = norms.largest <= tolerance;
   residual_sum = norms.sum;
   return report;
+}
+
+void ViscousSolver::run_sweeps(const ViscousSystem& system, const Periodicity& periodic, const Field<Real>& residual,
+                               int sweeps, Real s) {
+  const Layout& layout = residual.layout();
+  const Diffusion<float> diffusion(system);
+  const float first = chebyshev_weight(0, sweeps, s);
+  sweep("flow::viscous_start", *system.plan,
+        Stage{system.rows, FirstSweep{layout, residual.data(), iterate_.data(), first / diffusion.diagonal}});
+  start_wall_rows(system, system.fixed_rows, residual, first, iterate_);
+  start_wall_rows(system, system.moving_rows, residual, first, iterate_);
+  for (int m = 1; m < sweeps; ++m) {
+    const float weight = chebyshev_weight(m, sweeps, s);
+    fill_periodic_ghosts(iterate_, periodic, 1);
+    const Sweep body{layout,        residual.data(), iterate_.data(), next_.data(), diffusion,
+                     1.0F - weight, weight / diffusion.diagonal};
+    sweep("flow::viscous_sweep", *system.plan, Stage{system.rows, body});
+    sweep_wall_rows(system, system.fixed_rows, residual, weight, iterate_, next_);
+    sweep_wall_rows(system, system.moving_rows, residual, weight, iterate_, next_);
+    std::swap(iterate_, next_);
+  }
+  fill_periodic_ghosts(iterate_, periodic, 1);
 }
 
 }  // namespace peclet::flow

@@ -6,6 +6,8 @@
 // s = b / (1 + b), b = theta dt nu sum_a 2 / h_a^2. Sweeps run in single precision on the residual, which is then
 // recomputed in double precision, until the largest residual falls below the tolerance.
 #include "core/field.hpp"
+#include "core/halo.hpp"
+#include "core/sweep.hpp"
 #include "flow/settings.hpp"
 #include "flow/wall_rows.hpp"
 
@@ -15,6 +17,7 @@ namespace peclet::flow {
 struct ViscousSystem {
   Grid grid;
   Real diffusion = 0;  // theta dt nu
+  const SweepPlan* plan = nullptr;
   RowRanges rows;
   Field<OpenFraction> open;  // 0: row of a solid point, left out of norms
   WallRows fixed_rows, moving_rows;
@@ -34,6 +37,10 @@ class ViscousSolver {
   std::size_t bytes() const;
 
  private:
+  /// iterate_ = e after that many sweeps from zero, ghosts filled.
+  void run_sweeps(const ViscousSystem& system, const Periodicity& periodic, const Field<Real>& residual, int sweeps,
+                  Real s);
+
   Field<float> iterate_, next_;
 };
 
