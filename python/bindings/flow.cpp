@@ -4,8 +4,8 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 
-#include "bindings/arrays.hpp"
-#include "bindings/runtime.hpp"
+#include "python/bindings/arrays.hpp"
+#include "python/bindings/runtime.hpp"
 #include "flow/solver.hpp"
 
 namespace nb = nanobind;
