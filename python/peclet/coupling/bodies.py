@@ -59,28 +59,35 @@ class FluidInertia:
     rotational_damping: NDArray[np.float64]
 
 
-def fixed_fluid_inertia(bodies: Sequence[Body], density: float, coefficient: float) -> FluidInertia:
-    """So many times the displaced mass, nothing for rotations: a virtual mass chosen by hand."""
-    none = np.zeros(len(bodies))
-    return FluidInertia(coefficient * density * np.array([body.volume for body in bodies]), none, none, none)
-
-
-def estimated_fluid_inertia(
-    bodies: Sequence[Body], density: float, viscosity: float, time_step: float
+def fluid_inertia(
+    bodies: Sequence[Body],
+    density: float,
+    viscosity: float,
+    time_step: float,
+    coefficient: float | None = None,
 ) -> FluidInertia:
-    """Unbounded fluid around the sphere of equal volume, radius a; first order in time whatever the values.
+    """Estimated for the sphere of equal volume, radius a, in unbounded fluid.
 
     A sphere that gains the velocity dv at once gives the fluid, within dt, the impulse
     dv (rho V / 2 + 12 a^2 sqrt(pi rho mu dt) + 6 pi mu a dt): added mass, history force and Stokes drag; one
     that gains the rate of rotation dw gives it dw (16/3 a^4 sqrt(pi rho mu dt) + 8 pi mu a^3 dt)
     [LandauLifshitz1987, section 24].
+
+    With a coefficient, the added mass is so many times the displaced mass and the damping zero.
     """
     volume = np.array([body.volume for body in bodies])
     a = np.cbrt(0.75 / math.pi * volume)
     layer = math.sqrt(math.pi * density * viscosity * time_step)
+    if coefficient is None:
+        added_mass, damping = (
+            density * volume / 2 + 12 * a**2 * layer,
+            6 * math.pi * viscosity * a * time_step,
+        )
+    else:
+        added_mass, damping = coefficient * density * volume, np.zeros_like(volume)
     return FluidInertia(
-        added_mass=density * volume / 2 + 12 * a**2 * layer,
-        damping=6 * math.pi * viscosity * a * time_step,
+        added_mass=added_mass,
+        damping=damping,
         added_inertia=16 / 3 * a**4 * layer,
         rotational_damping=8 * math.pi * viscosity * a**3 * time_step,
     )

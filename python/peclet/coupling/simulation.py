@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from peclet import _checks
 from peclet.coupling import checkpoint, slices
-from peclet.coupling.bodies import Body, estimated_fluid_inertia, fixed_fluid_inertia
+from peclet.coupling.bodies import Body, fluid_inertia
 from peclet.coupling.history import History
 from peclet.coupling.interrupt import between_steps
 from peclet.coupling.rotation import from_body_axes, to_body_axes
@@ -35,9 +35,9 @@ class CoupledSimulation:
 
         (m + m_a + m_d) a = F + (m - rho V) g + m_a a_old
 
-    with added mass m_a and damping m_d estimated from the shape, or m_a a number times rho V. Contacts act
-    on the masses m alone, after that, and conserve momentum; a_old is without them, so that the
-    velocity lost in an impact is not handed back in the next step.
+    with added mass m_a and damping m_d estimated from the size, or m_a = added_mass rho V and m_d = 0;
+    likewise for rotations. Contacts act on the masses m alone, after that, and conserve momentum; a_old is
+    without them, so that the velocity lost in an impact is not handed back in the next step.
     """
 
     def __init__(
@@ -69,11 +69,8 @@ class CoupledSimulation:
         self._inertia = np.array([body.inertia for body in self._bodies])
         volume = np.array([[body.volume] for body in self._bodies])
         self._weight = (self._mass - density * volume) * np.array(_checks.vector(gravity, "gravity"))
-        if added_mass == "auto":
-            self._fluid = estimated_fluid_inertia(self._bodies, density, viscosity, self._time_step)
-        else:
-            coefficient = _checks.non_negative(added_mass, "added_mass")
-            self._fluid = fixed_fluid_inertia(self._bodies, density, coefficient)
+        coefficient = None if added_mass == "auto" else _checks.non_negative(added_mass, "added_mass")
+        self._fluid = fluid_inertia(self._bodies, density, viscosity, self._time_step, coefficient)
         self._acceleration = np.zeros((len(self._bodies), 3))
         self._angular_acceleration = np.zeros((len(self._bodies), 3))
 
