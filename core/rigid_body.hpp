@@ -7,14 +7,14 @@ namespace peclet {
 
 /// x = translation + scale R x_local. A scale of zero marks a body that has vanished.
 struct Pose {
-  Vec3 translation;
-  Quaternion rotation;
+  Vec3 translation{};
+  Quaternion rotation{};
   Real scale = 1;
 };
 
 /// Velocity of the centre of rotation and angular velocity, both along world axes.
 struct Twist {
-  Vec3 linear, angular;
+  Vec3 linear{}, angular{};
 };
 
 /// R^T (x - t) / s

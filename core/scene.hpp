@@ -16,15 +16,15 @@ struct SceneNode {
   int opcode = 0;
   int left = -1, right = -1;  // -1 for leaves
   Kokkos::Array<Real, 8> parameters{};
-  Pose pose;
+  Pose pose{};
 };
 
 struct SceneInstance {
   int root = 0;
   int material = -1;  // -1: none
-  Pose pose;
-  Twist twist;
-  Vec3 center;  // of rotation; means nothing unless pinned
+  Pose pose{};
+  Twist twist{};
+  Vec3 center{};  // of rotation; means nothing unless pinned
   bool center_pinned = false;
 
   /// A centre that is not pinned follows the translation.
