@@ -129,13 +129,15 @@ def test_touching_spheres_lose_their_approach_and_no_momentum():
     hit = int(np.argmax(np.abs(impulse).max(axis=(1, 2)) > 1e-9 * largest))
     assert hit > 0, "the spheres never met"
     assert np.abs(impulse.sum(axis=1)).max() < 1e-12 * largest
-    approach = history["velocity"][:, 0, 1] - history["velocity"][:, 1, 1]
+    line = history["position"][:, 1] - history["position"][:, 0]
+    distance = np.linalg.norm(line, axis=1)
+    approach = np.einsum("ti,ti->t", history["velocity"][:, 0] - history["velocity"][:, 1], line) / distance
     assert approach[hit - 1] > 0.02
-    assert abs(approach[hit]) < 1e-3 * approach[hit - 1]
+    # the fluid changes velocities once more between the touch and the end of the step
+    assert abs(approach[hit]) < 5e-3 * approach[hit - 1]
     # an inelastic impact is not answered by a rebound in the steps after it
-    assert approach[hit:].min() > -0.02 * approach[hit - 1]
-    gap = history["position"][:, 1, 1] - history["position"][:, 0, 1] - 4.0
-    assert gap.min() > -1e-3 * 4.0
+    assert np.abs(approach[hit + 1 :]).max() < 1e-5 * approach[hit - 1]
+    assert distance.min() > (1 - 1e-3) * 4.0
 
 
 def test_position_only_contact_leaves_velocities_alone():

@@ -48,6 +48,6 @@ def test_no_fluid_is_made_or_lost(finished):
 
 
 def test_the_two_spheres_are_almost_equal(finished):
-    leader, follower = finished["rows"][-1][0]
-    # the upper one is nearer to the lid than the lower one to anything: same force to a per cent
-    assert leader[1] == pytest.approx(follower[1], rel=0.02)
+    leader, follower = finished["rows"][-1][1]
+    # no wake yet, but their surfaces cut the grid in different places, six cells per diameter
+    assert leader[1] == pytest.approx(follower[1], rel=0.05)
