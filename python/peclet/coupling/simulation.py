@@ -163,9 +163,10 @@ class CoupledSimulation:
         checkpoint.write(path, self.state())
 
     def restart(self, path: str | pathlib.Path) -> None:
-        """Go on from a file that `save` wrote, as if the run had never stopped.
+        """Go on from a file that `save` wrote.
 
-        The simulation must have been set up by the same calls as the one that was saved.
+        The simulation must have been set up by the same calls as the one that was saved. The flow goes on
+        from velocity and pressure, so that its first step is of first order in time.
         """
         self.set_state(checkpoint.read(path))
 
