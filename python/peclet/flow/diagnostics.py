@@ -84,9 +84,8 @@ class Instruments(Part):
         """Terms of the force budget of the last step, shape (2, 3).
 
         Row 0: density / dt times the sum of the velocity change over the fluid faces, times the cell volume.
-        Row 1: zero, because the momentum that advection carries through the walls is part of the force on
-        the bodies. So the forces on all bodies (and on the solid of set_solid) add up to body force times
-        volume of fluid faces + row 1 - row 0.
+        Row 1: zero, because advection exchanges no momentum with the walls. So the forces on all bodies
+        (and on the solid of set_solid) add up to body force times volume of fluid faces + row 1 - row 0.
         """
         if not self._status.has_budget:
             raise RuntimeError("reaction_budget_terms(): call step() first")
@@ -144,9 +143,12 @@ class Instruments(Part):
     def _loads(self, call: str) -> NDArray[np.float64]:
         if self._core.number_of_bodies == 0:
             return np.zeros((2, 0, 3))
+        self._require_loads(call)
+        return self._core.loads()
+
+    def _require_loads(self, call: str) -> None:
         if not self._status.has_loads:
             raise RuntimeError(f"{call}(): call step() first")
-        return self._core.loads()
 
 
 class SolverDiagnostics(Instruments):

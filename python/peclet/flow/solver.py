@@ -180,14 +180,12 @@ class Solver(Parameters, Geometry, Fields, Instruments):
         return self._loads("hydro_force_torque")
 
     def force_shares(self) -> dict[str, NDArray[np.float64]]:
-        """Shares of the force on every body, shape (n, 3) each: 'pressure', 'viscous' and 'advective'.
+        """Shares of the force on every body, shape (n, 3) each: 'pressure' and 'viscous'.
 
-        Their sum is the force of hydro_force_torque_reaction(). 'advective' is the momentum that the flow
-        carries through the wall's control-volume faces; it vanishes for Stokes flow.
+        Their sum is the force of hydro_force_torque_reaction().
         """
-        force = self._loads("force_shares")[0]
-        pressure, viscous = self._core.pressure_force(), self._core.viscous_force()
-        return {"pressure": pressure, "viscous": viscous, "advective": force - pressure - viscous}
+        self._require_loads("force_shares")
+        return {"pressure": self._core.pressure_force(), "viscous": self._core.viscous_force()}
 
     # the rest
 
