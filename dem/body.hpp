@@ -22,6 +22,10 @@ KOKKOS_INLINE_FUNCTION bool is_immovable(Real inverse_mass, Vec3 inverse_inertia
   return inverse_mass == 0 && inverse_inertia.x == 0 && inverse_inertia.y == 0 && inverse_inertia.z == 0;
 }
 
+KOKKOS_INLINE_FUNCTION bool is_finite(Vec3 a) {
+  return Kokkos::isfinite(a.x) && Kokkos::isfinite(a.y) && Kokkos::isfinite(a.z);
+}
+
 /// R I^-1 R^T v
 KOKKOS_INLINE_FUNCTION Vec3 inverse_inertia_times(const Body& body, Vec3 v) {
   const Vec3 j = body.inverse_inertia;

@@ -13,6 +13,7 @@ struct Contact {
   int row_entry = 0;  // index among the contacts sorted by (a, b, image)
   Vec3 offset;  // pair: add to the position of b; wall: point of its tangent plane at the end of the substep
   Vec3 normal;  // from b to a
+  Vec3 end_normal;  // the same at the end of the substep
   Vec3 wall_velocity;
   Real reach = 0;  // distance of the centres (of centre and wall) at touch
   Real share = 1;  // of the reach that is the radius of a
@@ -38,6 +39,8 @@ struct ContactOrder {
   Index color_begin[maximum_colors + 1] = {0};  // color c is [color_begin[c], color_begin[c + 1])
   Index count = 0;                              // the rest is [color_begin[number_of_colors], count)
 };
+
+enum class Direction { Forward, Backward };
 
 template <class Function>
 void for_each_contact(const std::string& label, const ContactOrder& order, const Function& body) {

@@ -1,5 +1,7 @@
 #include "dem/contact_coloring.hpp"
 
+#include <utility>
+
 namespace peclet::dem {
 namespace {
 
@@ -19,6 +21,8 @@ struct Round {
   ParticleArrays particles;
   Array<int> colors;
   Array<std::uint64_t> used, best;
+  Array<Index> waiting;  // contacts without a color
+  Index number_waiting = 0;
 
   KOKKOS_INLINE_FUNCTION bool moves(int particle) const {
     return particle >= 0 &&
@@ -27,18 +31,19 @@ struct Round {
 };
 
 void clear(const Round& round) {
-  for_each("dem::clear_colors", round.keys.count, KOKKOS_LAMBDA(Index n) { round.colors(n) = none; });
   for_each(
-      "dem::clear_used_colors", round.keys.rows, KOKKOS_LAMBDA(Index n) {
-        round.used(n) = 0;
-        round.best(n) = 0;
+      "dem::clear_colors", round.keys.count, KOKKOS_LAMBDA(Index n) {
+        round.colors(n) = none;
+        round.waiting(n) = n;
       });
+  for_each("dem::clear_used_colors", round.keys.rows, KOKKOS_LAMBDA(Index n) { round.used(n) = 0; });
 }
 
 void bid(const Round& round) {
+  for_each("dem::reset_bids", round.keys.rows, KOKKOS_LAMBDA(Index n) { round.best(n) = 0; });
   for_each(
-      "dem::bid", round.keys.count, KOKKOS_LAMBDA(Index n) {
-        if (round.colors(n) != none) return;
+      "dem::bid", round.number_waiting, KOKKOS_LAMBDA(Index m) {
+        const Index n = round.waiting(m);
         const ContactKey key = round.keys.keys(n);
         if (round.moves(key.a)) Kokkos::atomic_max(&round.best(key.a), priority_of(n) + 1);
         if (round.moves(key.b)) Kokkos::atomic_max(&round.best(key.b), priority_of(n) + 1);
@@ -48,8 +53,8 @@ void bid(const Round& round) {
 /// A contact that is first at both its particles takes the lowest color that neither has used.
 void take_colors(const Round& round) {
   for_each(
-      "dem::take_colors", round.keys.count, KOKKOS_LAMBDA(Index n) {
-        if (round.colors(n) != none) return;
+      "dem::take_colors", round.number_waiting, KOKKOS_LAMBDA(Index m) {
+        const Index n = round.waiting(m);
         const ContactKey key = round.keys.keys(n);
         const bool moves_a = round.moves(key.a), moves_b = round.moves(key.b);
         if (moves_a && round.best(key.a) != priority_of(n) + 1) return;
@@ -64,14 +69,17 @@ void take_colors(const Round& round) {
       });
 }
 
-void reset_bids(const Round& round) {
-  for_each("dem::reset_bids", round.keys.rows, KOKKOS_LAMBDA(Index n) { round.best(n) = 0; });
-}
-
-bool is_complete(const Round& round) {
-  return max_each(
-             "dem::is_complete", round.keys.count,
-             KOKKOS_LAMBDA(Index n) { return round.colors(n) == none ? Real{1} : Real{0}; }) == 0;
+/// Write those that still wait to next, in the same order; returns their number.
+Index collect_waiting(const Round& round, const Array<Index>& offsets, const Array<Index>& next) {
+  const Index number = enumerate(
+      "dem::enumerate_waiting", round.number_waiting, offsets,
+      KOKKOS_LAMBDA(Index m) { return round.colors(round.waiting(m)) == none; });
+  for_each(
+      "dem::collect_waiting", round.number_waiting, KOKKOS_LAMBDA(Index m) {
+        const Index n = round.waiting(m);
+        if (round.colors(n) == none) next(offsets(m)) = n;
+      });
+  return number;
 }
 
 int highest_color(const Round& round) {
@@ -104,6 +112,7 @@ ContactOrder ContactColoring::arrange(const ContactKeys& keys, const ParticleArr
   if (place_.extent(0) < count) {
     place_ = Array<Index>("dem.place", count + count / 4);
     offsets_ = Array<Index>("dem.color_offsets", count + count / 4);
+    waiting_ = Array<Index>("dem.waiting", count + count / 4);
     colors_ = Array<int>("dem.colors", count + count / 4);
   }
   ContactOrder order;
@@ -117,13 +126,15 @@ ContactOrder ContactColoring::arrange(const ContactKeys& keys, const ParticleArr
     used_colors_ = Array<std::uint64_t>("dem.used_colors", rows);
     best_priority_ = Array<std::uint64_t>("dem.best_priority", rows);
   }
-  const Round round{keys, particles, colors_, used_colors_, best_priority_};
+  Round round{keys, particles, colors_, used_colors_, best_priority_, waiting_, keys.count};
   clear(round);
-  do {
-    reset_bids(round);
+  Array<Index> next = place_;
+  while (round.number_waiting > 0) {
     bid(round);
     take_colors(round);
-  } while (!is_complete(round));
+    round.number_waiting = collect_waiting(round, offsets_, next);
+    std::swap(round.waiting, next);
+  }
 
   const int highest = highest_color(round);
   order.number_of_colors = highest < no_color_left ? highest + 1 : no_color_left;

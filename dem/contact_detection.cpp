@@ -34,7 +34,8 @@ struct PairVisitor {
   Vec3 position;
   Real reach;
   bool a_is_fixed;
-  ContactKey* row;  // nullptr: only count
+  ContactKey* row;
+  int room;  // keys beyond it are only counted
   int count = 0;
 
   KOKKOS_FUNCTION void operator()(const CellList::Entry& entry, Vec3 shift, int image) {
@@ -44,7 +45,7 @@ struct PairVisitor {
     const Real limit = reach + entry.reach;
     if (!(dot(d, d) < limit * limit)) return;
     if (a_is_fixed && particles.inverse_mass(b) == 0) return;
-    if (row) row[count] = {a, b, image};
+    if (count < room) row[count] = {a, b, image};
     ++count;
   }
 };
@@ -60,18 +61,20 @@ KOKKOS_INLINE_FUNCTION int wall_features(const ContactScene& scene, Index a, con
       features);
 }
 
-/// Number of contacts of particle a; written to row unless that is nullptr.
-KOKKOS_FUNCTION int collect_row(const ContactScene& scene, const CellList& cells, Index a, ContactKey* row) {
+/// Number of contacts of particle a; as many as there is room for are written to row.
+KOKKOS_FUNCTION int collect_row(const ContactScene& scene, const CellList& cells, Index a, ContactKey* row,
+                                int room) {
   const Real reach = scene.reaches(a);
   const bool is_fixed = scene.particles.inverse_mass(a) == 0;
-  PairVisitor pairs{scene.particles, static_cast<int>(a), scene.particles.position(a), reach, is_fixed, row};
+  PairVisitor pairs{
+      scene.particles, static_cast<int>(a), scene.particles.position(a), reach, is_fixed, row, room};
   cells.visit_near(scene.particles.position(a), 2 * reach, pairs);
   int count = pairs.count;
   for (int w = 0; w < scene.walls.count && !is_fixed; ++w) {
     WallFeature features[WallArrays::maximum_features];
     const int found = wall_features(scene, a, scene.walls.walls(w), features);
     for (int k = 0; k < found; ++k, ++count)
-      if (row) row[count] = {static_cast<int>(a), -1 - w, k};
+      if (count < room) row[count] = {static_cast<int>(a), -1 - w, k};
   }
   return count;
 }
@@ -89,23 +92,33 @@ KOKKOS_INLINE_FUNCTION void sort_row(ContactKey* row, Index count) {
   }
 }
 
-void count_contacts(const ContactScene& scene, const CellList& cells, const Array<Index>& sizes) {
+/// Keys per particle that the first search keeps; a particle with more contacts searches again.
+constexpr int kept_keys = 16;
+
+void count_contacts(const ContactScene& scene, const CellList& cells, const Array<Index>& sizes,
+                    const Array<ContactKey>& kept) {
   for_each(
-      "dem::count_contacts", scene.particles.count,
-      KOKKOS_LAMBDA(Index a) { sizes(a) = collect_row(scene, cells, a, nullptr); });
+      "dem::count_contacts", scene.particles.count, KOKKOS_LAMBDA(Index a) {
+        sizes(a) = collect_row(scene, cells, a, kept.data() + kept_keys * a, kept_keys);
+      });
 }
 
 Index sum_row_sizes(Index rows, const Array<Index>& sizes, const Array<Index>& begin) {
   return exclusive_sum("dem::sum_row_sizes", rows, begin, KOKKOS_LAMBDA(Index n) { return sizes(n); });
 }
 
-void fill_rows(const ContactScene& scene, const CellList& cells, const ContactKeys& keys) {
+void fill_rows(const ContactScene& scene, const CellList& cells, const Array<ContactKey>& kept,
+               const ContactKeys& keys) {
   for_each(
       "dem::fill_rows", scene.particles.count, KOKKOS_LAMBDA(Index a) {
-        const Index begin = keys.row_begin(a), size = keys.row_begin(a + 1) - begin;
-        if (size == 0) return;
-        collect_row(scene, cells, a, &keys.keys(begin));
-        sort_row(&keys.keys(begin), size);
+        const Index begin = keys.row_begin(a);
+        const int size = static_cast<int>(keys.row_begin(a + 1) - begin);
+        ContactKey* row = keys.keys.data() + begin;
+        if (size > kept_keys)
+          collect_row(scene, cells, a, row, size);
+        else
+          for (int n = 0; n < size; ++n) row[n] = kept(kept_keys * a + n);
+        sort_row(row, size);
       });
 }
 
@@ -186,11 +199,11 @@ void write_contacts(const ContactScene& scene, const ContactKeys& keys, const Ar
       });
 }
 
-void write_history(Index count, const Array<Contact>& contacts, const ContactHistory& history) {
+void write_history(Index count, const Array<Contact>& contacts, Real dt, const ContactHistory& history) {
   for_each(
       "dem::write_history", count, KOKKOS_LAMBDA(Index n) {
         const Contact& c = contacts(n);
-        const Real rate = c.closed_time > 0 ? 1 / c.closed_time : 0;
+        const Real rate = 1 / dt;
         history.force(c.row_entry) = rate * c.normal_impulse;
         history.friction(c.row_entry) = rate * c.tangential_impulse;
         history.normal(c.row_entry) = c.normal;
@@ -216,12 +229,13 @@ void ContactFinder::find(ContactScene& scene, const Bodies& bodies, ContactKeys&
   keys.rows = count;
   make_room(row_sizes_, "dem.row_sizes", count);
   make_room(keys.row_begin, "dem.row_begin", count + 1);
-  count_contacts(scene, cells, row_sizes_);
+  make_room(kept_, "dem.kept_keys", kept_keys * count);
+  count_contacts(scene, cells, row_sizes_, kept_);
   keys.count = sum_row_sizes(count, row_sizes_, keys.row_begin);
   require_state(keys.count <= std::numeric_limits<int>::max(),
                 "contacts: expected at most 2147483647, found more");
   make_room(keys.keys, "dem.keys", keys.count);
-  fill_rows(scene, cells, keys);
+  fill_rows(scene, cells, kept_, keys);
 }
 
 void build_contacts(const ContactScene& scene, const ContactKeys& keys, const Array<Index>& place,
@@ -230,11 +244,11 @@ void build_contacts(const ContactScene& scene, const ContactKeys& keys, const Ar
   write_contacts(scene, keys, place, history, contacts);
 }
 
-void record_history(ContactKeys& keys, const Array<Contact>& contacts, ContactHistory& history) {
+void record_history(ContactKeys& keys, const Array<Contact>& contacts, Real dt, ContactHistory& history) {
   make_room(history.force, "dem.history_force", keys.count);
   make_room(history.friction, "dem.history_friction", keys.count);
   make_room(history.normal, "dem.history_normal", keys.count);
-  write_history(keys.count, contacts, history);
+  write_history(keys.count, contacts, dt, history);
   std::swap(keys, history.keys);
 }
 

@@ -51,6 +51,7 @@ class ContactFinder {
   NeighborSearch search_;
   Array<Real> reaches_;
   Array<Index> row_sizes_;
+  Array<ContactKey> kept_;
 };
 
 /// contacts(place(n)) becomes contact n of the keys, with what it carried in the last substep.
@@ -58,6 +59,6 @@ void build_contacts(const ContactScene& scene, const ContactKeys& keys, const Ar
                     const ContactHistory& history, Array<Contact>& contacts);
 
 /// Remember what the closed contacts carry. The keys go into the history; keys gets the old ones as scratch.
-void record_history(ContactKeys& keys, const Array<Contact>& contacts, ContactHistory& history);
+void record_history(ContactKeys& keys, const Array<Contact>& contacts, Real dt, ContactHistory& history);
 
 }  // namespace peclet::dem

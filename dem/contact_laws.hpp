@@ -171,25 +171,30 @@ KOKKOS_INLINE_FUNCTION bool resolve_impact(Contact& c, const Bodies& bodies, con
 inline constexpr Real closed_tolerance = 1e-4;
 
 /// Decide whether the contact is closed in the last part of the substep, and for how long. The force then
-/// acts along the line of centres at the middle of that time, which conserves angular momentum.
+/// acts along the line of centres at the middle of that time, which conserves angular momentum; the approach
+/// must stop along the line of centres at the end, so that spheres that roll over each other neither part nor
+/// overlap.
 KOKKOS_INLINE_FUNCTION void close_contact(Contact& c, const Bodies& bodies, Real dt) {
   const RelativeMotion end = relative_motion(c, bodies);
-  if (c.closed_time == 0) {
-    const bool persists = c.carried_force > 0 && c.gap <= closed_tolerance * c.reach;
-    if (persists)
-      c.closed_time = dt;
-    else if (gap_of(c, end.distance) < 0)
-      c.closed_time = find_closed_time(c, end, 0, dt);
-    else
-      return;
+  const bool persists = c.carried_force > 0 && c.gap <= closed_tolerance * c.reach;
+  const bool overlaps = gap_of(c, end.distance) < 0;
+  if (!overlaps && !persists) {
+    c.closed_time = 0;  // bounced off, or never met
+    return;
   }
+  if (persists)
+    c.closed_time = dt;
+  else if (c.closed_time == 0)
+    c.closed_time = find_closed_time(c, end, 0, dt);
   const RelativeMotion touch = end.before(c.closed_time);
   const Vec3 middle = touch.distance + (0.5 * c.closed_time) * touch.velocity;
   c.normal = normal_of(c, middle);
   c.closed_length = length_of(c, middle);
+  c.end_normal = normal_of(c, end.distance);
 }
 
-/// Start from the force of the last substep.
+/// Start from the force of the last substep. (That is its impulse over the whole substep: over the closed
+/// time, which may be arbitrarily short, it would not be a force that goes on.)
 KOKKOS_INLINE_FUNCTION void apply_carried_force(Contact& c, const Bodies& bodies) {
   if (c.closed_time == 0 || c.carried_force == 0) return;
   c.normal_impulse = c.closed_time * c.carried_force;
@@ -211,7 +216,8 @@ KOKKOS_INLINE_FUNCTION Real update_sustained_force(Contact& c, const Bodies& bod
   const Vec3 n = c.normal;
   const Real mobility = normal_mobility(c, bodies);
   const Vec3 velocity = relative_motion(c, bodies).velocity;
-  const Real normal = Kokkos::max(Real{0}, c.normal_impulse - dot(n, velocity) / mobility);
+  const Real separation = dot(c.end_normal, velocity) / dot(c.end_normal, n);
+  const Real normal = Kokkos::max(Real{0}, c.normal_impulse - separation / mobility);
   Vec3 change = (normal - c.normal_impulse) * n;
   Real response = mobility * Kokkos::abs(normal - c.normal_impulse);
   c.normal_impulse = normal;

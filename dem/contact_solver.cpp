@@ -110,7 +110,7 @@ SolverReport ContactSolver::solve(ContactScene& scene, const Bodies& bodies,
   report.velocity_seconds = timer.seconds() - report.search_seconds;
   if (order_.count > 0) solve_positions(sweep, order_, iterations.position, report);
   report.position_seconds = timer.seconds() - report.search_seconds - report.velocity_seconds;
-  if (scene.dt > 0) record_history(keys_, contacts_, history_);
+  if (scene.dt > 0) record_history(keys_, contacts_, scene.dt, history_);
   return report;
 }
 

@@ -45,8 +45,6 @@ KOKKOS_INLINE_FUNCTION Body predicted(const ParticleArrays& p, Index n, Vec3 gra
   return body;
 }
 
-KOKKOS_INLINE_FUNCTION bool is_finite(Vec3 a) { return Kokkos::isfinite(dot(a, a)); }
-
 }  // namespace
 
 void wrap_positions(const ParticleArrays& particles, const Domain& domain) {

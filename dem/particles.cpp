@@ -8,6 +8,7 @@
 
 #include "core/error.hpp"
 #include "core/loop.hpp"
+#include "dem/body.hpp"
 
 namespace peclet::dem {
 namespace {
@@ -43,10 +44,6 @@ void fill_sphere_inertias(const ParticleArrays& particles, Real shape_radius) {
             inverse_sphere_inertia(particles.inverse_mass(n), particles.scale(n) * shape_radius);
         particles.inverse_inertia(n) = {value, value, value};
       });
-}
-
-KOKKOS_INLINE_FUNCTION bool is_finite(Vec3 a) {
-  return Kokkos::isfinite(a.x) && Kokkos::isfinite(a.y) && Kokkos::isfinite(a.z);
 }
 
 enum class Flaw : int { None, Position, Velocity, AngularVelocity, Orientation, Force, Torque, InverseMass };
