@@ -61,16 +61,21 @@ Bodies::Bodies(const Scene& scene, const Grid& grid, bool periodic_images, const
   geometry_.box = period_of(grid, domain);
   geometry_.images = geometry_.box;
   for (int a = 0; a < 3; ++a) geometry_.images.axis[a] = geometry_.images.axis[a] && periodic_images;
-  for (Body& body : bodies_) {
-    Vec3 low, high;
-    rotated_bounds(body, low, high);
-    for (int a = 0; a < 3; ++a) {
-      // a band around the surface must see the true distance through the nearest image alone
-      const Real reach = std::max(-low[a], high[a]) + 4 * grid.spacing[a];
-      if (geometry_.images.axis[a] && reach > 0.5 * grid.extent(a)) body.wide = true;
-    }
-  }
+  for (Body& body : bodies_) compare_with_periods(body);
   geometry_.bodies = Array<Body>("flow::bodies", bodies_.size());
+}
+
+void Bodies::compare_with_periods(Body& body) const {
+  Vec3 low, high;
+  rotated_bounds(body, low, high);
+  body.wide = body.meets_images = false;
+  for (int a = 0; a < 3; ++a) {
+    if (!geometry_.images.axis[a]) continue;
+    // a band around the surface must see the true distance through the nearest image alone
+    const Real reach = std::max(-low[a], high[a]) + 4 * grid_.spacing[a];
+    body.wide = body.wide || reach > 0.5 * grid_.extent(a);
+    body.meets_images = body.meets_images || high[a] - low[a] > grid_.extent(a);
+  }
 }
 
 bool Bodies::moves(int b) const { return !is_at_rest((*this)[b].twist); }
@@ -86,6 +91,7 @@ void Bodies::set_pose(int b, Vec3 translation, Quaternion rotation) {
   bodies_[n].pose.translation = translation;
   bodies_[n].pose.rotation = normalized(rotation);
   if (!pinned_[n]) bodies_[n].center = translation;
+  compare_with_periods(bodies_[n]);
   stale_ = true;
 }
 
@@ -176,7 +182,7 @@ Index count_image_overlap(const Grid& grid, const BodyGeometry& geometry, int co
           const Body& body = bodies.bodies(b);
           solid = solid || bodies.distance(b, x) < 0;
           // a body that fits into the box has no image of its own to collide with
-          const Real alone = body.wide ? bodies.program.distance(body.slot, body.pose, x) : bodies.distance(b, x);
+          const Real alone = body.meets_images ? bodies.program.distance(body.slot, body.pose, x) : bodies.distance(b, x);
           unshifted = unshifted || alone < 0;
         }
         return solid && !unshifted ? 1.0 : 0.0;

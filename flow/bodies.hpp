@@ -18,6 +18,7 @@ struct Body {
   Vec3 center;                  // of rotation
   Vec3 local_low, local_high;   // bounds in the frame of the root
   bool wide = false;            // reaches beyond half a period: images other than the nearest matter
+  bool meets_images = false;    // longer than a period
   bool dynamic = false;         // re-sampled at every geometry update
 
   /// Velocity of the rigid motion at x: U + Omega x (x - center), nearest image of the arm.
@@ -113,6 +114,8 @@ class Bodies {
   Box region(int b, int margin) const;
 
  private:
+  void compare_with_periods(Body& body) const;
+
   Grid grid_;
   Periodicity domain_;
   BodyGeometry geometry_;

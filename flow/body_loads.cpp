@@ -4,7 +4,7 @@ namespace peclet::flow {
 namespace {
 
 /// Bins of one body.
-enum Bin : int { Viscous = 0, Pressure = 3, Advective = 6, Torque = 9, WettedArea = 12, bins_per_body = 13 };
+enum Bin : int { Viscous = 0, Pressure = 3, Torque = 6, WettedArea = 9, bins_per_body = 10 };
 
 /// Adds a force along axis c that acts at x; walls without an instance share the last set of bins.
 struct LoadAdder {
@@ -27,28 +27,6 @@ struct LoadAdder {
   }
 };
 
-template <class Scheme>
-struct AdvectiveTraction {
-  /// Momentum flux out of the control volume of face p in direction d, per volume.
-  KOKKOS_INLINE_FUNCTION static Real outflow(const FaceVector<Real>& v, int c, int d, Index p, Real inverse_spacing) {
-    const Layout& layout = v.x.layout();
-    const Index own = layout.stride(c), step = layout.stride(d / 2);
-    const Real *q = v[c].data(), *carrying = v[d / 2].data();
-    return d % 2 ? inverse_spacing * momentum_flux_low<Scheme>(q, carrying, p + step, own, step)
-                 : -inverse_spacing * momentum_flux_low<Scheme>(q, carrying, p, own, step);
-  }
-  KOKKOS_INLINE_FUNCTION static Real divergence_part(const FaceVector<Real>& v, int c, Index p, const Real3& inverse_spacing) {
-    return v[c][p] * carrier_divergence(v, c, p, inverse_spacing);
-  }
-};
-
-template <>
-struct AdvectiveTraction<NoAdvection> {
-  KOKKOS_INLINE_FUNCTION static Real outflow(const FaceVector<Real>&, int, int, Index, Real) { return 0; }
-  KOKKOS_INLINE_FUNCTION static Real divergence_part(const FaceVector<Real>&, int, Index, const Real3&) { return 0; }
-};
-
-template <class Scheme>
 void add_wall_tractions(int c, const MomentumTerms& terms, const SolidSampler& solid, const WallRows& rows,
                         const Field<Real>& correction, const LoadAdder& adder, const ScatterSum& sums) {
   const MomentumTerms t = terms;
@@ -79,13 +57,9 @@ void add_wall_tractions(int c, const MomentumTerms& terms, const SolidSampler& s
             laplacian += (w.weight(row, d ^ 1) - 1) * (v[q] + t.implicit_weight * e[q] - here);
           }
           const Real viscous = -t.density * t.kinematic_viscosity * volume * inverse[a] * inverse[a] * laplacian;
-          loads.add(chunk, owner, Viscous, c, viscous, x);
-          loads.add(chunk, owner, Advective, c,
-                    t.density * volume * AdvectiveTraction<Scheme>::outflow(t.extrapolated, c, d, p, inverse[a]), x);
+          loads.add(chunk, owner, Viscous, c, viscous, wall);
           loads.bins.add(chunk, loads.first_bin(owner) + WettedArea, 1.0);
         }
-        loads.add(chunk, w.owner(row, 0), Advective, c,
-                  -t.density * volume * AdvectiveTraction<Scheme>::divergence_part(t.extrapolated, c, p, inverse), x);
       });
 }
 
@@ -113,13 +87,6 @@ void add_wall_pressure(int c, const SolidSampler& solid, const WallRows& rows, c
       });
 }
 
-template <class Scheme>
-void add_both(int c, const MomentumTerms& terms, const SolidSampler& solid, const WallRows& fixed_rows,
-              const WallRows& moving_rows, const Field<Real>& correction, const LoadAdder& adder, const ScatterSum& sums) {
-  add_wall_tractions<Scheme>(c, terms, solid, fixed_rows, correction, adder, sums);
-  add_wall_tractions<Scheme>(c, terms, solid, moving_rows, correction, adder, sums);
-}
-
 Vec3 triple(const std::vector<Real>& sums, std::size_t first) {
   return {sums[first], sums[first + 1], sums[first + 2]};
 }
@@ -137,16 +104,8 @@ void LoadCollector::add_momentum(int c, const MomentumTerms& terms, const SolidS
                                  Real residual_sum) {
   const LoadAdder adder{sums_.bins(), solid.geometry, bodies_};
   left_over_[c] = residual_sum * terms.density * terms.grid.cell_volume() / terms.time_step;
-  switch (terms.scheme) {
-    case AdvectionScheme::None:
-      return add_both<NoAdvection>(c, terms, solid, fixed_rows, moving_rows, correction, adder, sums_);
-    case AdvectionScheme::SecondUpwind:
-      return add_both<SecondUpwindScheme>(c, terms, solid, fixed_rows, moving_rows, correction, adder, sums_);
-    case AdvectionScheme::Koren:
-      return add_both<KorenScheme>(c, terms, solid, fixed_rows, moving_rows, correction, adder, sums_);
-    case AdvectionScheme::Central:
-      return add_both<CentralScheme>(c, terms, solid, fixed_rows, moving_rows, correction, adder, sums_);
-  }
+  add_wall_tractions(c, terms, solid, fixed_rows, correction, adder, sums_);
+  add_wall_tractions(c, terms, solid, moving_rows, correction, adder, sums_);
 }
 
 void LoadCollector::add_pressure(int c, const SolidSampler& solid, const WallRows& fixed_rows,
@@ -168,8 +127,7 @@ std::vector<BodyLoad> LoadCollector::finish(const std::vector<Vec3>& spin_resist
     load.viscous_force = triple(sums, first + Viscous);
     if (wetted > 0) load.viscous_force += (sums[first + WettedArea] / wetted) * left_over_;
     load.pressure_force = triple(sums, first + Pressure);
-    load.advective_force = triple(sums, first + Advective);
-    load.force = load.viscous_force + load.pressure_force + load.advective_force;
+    load.force = load.viscous_force + load.pressure_force;
     load.torque = triple(sums, first + Torque) - spin_resistance[b];
   }
   return loads;

@@ -1,11 +1,11 @@
 #pragma once
 // Force and torque of the fluid on every body: the momentum that the discrete equations of the fluid lost to
 // it. Each term that links two fluid points cancels in the sum over the fluid; what remains is, per wall row,
-//   viscous    the wall part of nu L (v + theta e),
+//   viscous    the wall part of nu L (v + theta e), which acts at the wall,
 //   pressure   (p at the wall cell) on faces whose neighbour along their own axis is closed,
-//   advection  the momentum flux through control-volume faces towards closed points, less v_c div(v),
-// and is given to the body that owns the wall. So  sum of forces = f N - rho / dt sum (u_new - u)  over the N
-// fluid points, to rounding: the momentum that the iterative solver left over is shared out by wetted area.
+// and is given to the body that owns the wall. Advection hands nothing to walls, see advective_leak(). So
+//   sum of forces = f N - rho / dt sum (u_new - u)   over the N fluid points, to rounding:
+// the momentum that the iterative solver left over is shared out by wetted area.
 //
 // Torques are moments of the same terms about the centre of rotation, plus the transposed part of the viscous
 // stress, which on a rigid no-slip wall integrates to -2 mu V Omega for a body of volume V.
@@ -18,10 +18,10 @@ namespace peclet::flow {
 
 struct BodyLoad {
   Vec3 force, torque;
-  Vec3 pressure_force, viscous_force, advective_force;  // sum to force
+  Vec3 pressure_force, viscous_force;  // sum to force
 };
 
-/// Collects the loads of one step: viscous and advective parts component by component, then the pressure.
+/// Collects the loads of one step: viscous parts component by component, then the pressure.
 class LoadCollector {
  public:
   void start(int number_of_bodies);

@@ -60,6 +60,8 @@ KOKKOS_INLINE_FUNCTION OpenFraction open_fraction_at(const SolidSampler& solid, 
   const Real low = solid.sdf[q], high = solid.sdf[p];
   if (0.5 * (low + high) < 0) return 0;
   if (low > half_diagonal || high > half_diagonal) return fully_open;
+  // what two surfaces squeeze out of a narrow gap could not pass through the slits that the geometry leaves
+  if (narrow_gap(solid, axis, i, j, k).share > 0) return fully_open;
   const Real open = face_opening(solid, axis, i, j, k, solid.owner[q], solid.owner[p]).open;
   const Real quantised = Kokkos::round(open * fully_open);
   if (quantised < smallest_open_fraction) return smallest_open_fraction;

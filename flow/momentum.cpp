@@ -185,6 +185,34 @@ void residual_of_wall_rows(int c, const MomentumTerms& terms, const WallRows& ro
       });
 }
 
+/// Momentum per unit time, density and volume that advection takes out of the fluid at wall rows.
+template <class Scheme>
+Real leak_of_rows(int c, const MomentumTerms& terms, const WallRows& rows) {
+  const FaceVector<Real> v = terms.extrapolated;
+  const InverseSpacing inverse(terms.grid);
+  const WallRows w = rows;
+  return sum_each(
+      "flow::advective_leak", rows.count, KOKKOS_LAMBDA(Index row) {
+        if (w.superseded(row)) return 0.0;
+        const Layout& layout = v.x.layout();
+        const Index p = w.face(row), own = layout.stride(c);
+        Real outflow = -v[c][p] * carrier_divergence(v, c, p, inverse.first);
+        for (int d = 0; d < WallRows::directions; ++d) {
+          if (!w.is_wall(row, d)) continue;
+          const Index step = layout.stride(d / 2);
+          const Real flux =
+              momentum_flux_low<Scheme>(v[c].data(), v[d / 2].data(), d % 2 ? p + step : p, own, step);
+          outflow += inverse.first[d / 2] * (d % 2 ? flux : -flux);
+        }
+        return outflow;
+      });
+}
+
+template <class Scheme>
+Real leak_of_scheme(int c, const MomentumTerms& terms, const WallRows& fixed_rows, const WallRows& moving_rows) {
+  return leak_of_rows<Scheme>(c, terms, fixed_rows) + leak_of_rows<Scheme>(c, terms, moving_rows);
+}
+
 template <class Scheme, int c>
 void residual_of_component(const MomentumTerms& terms, const SweepPlan& plan, const RowRanges& rows,
                            const WallRows& fixed_rows, const WallRows& moving_rows, const Field<Real>& residual) {
@@ -234,6 +262,20 @@ void compute_momentum_residual(int c, const MomentumTerms& terms, const SweepPla
     case AdvectionScheme::Central:
       return residual_with_scheme<CentralScheme>(c, terms, plan, rows, fixed_rows, moving_rows, residual);
   }
+}
+
+Real advective_leak(int c, const MomentumTerms& terms, const WallRows& fixed_rows, const WallRows& moving_rows) {
+  switch (terms.scheme) {
+    case AdvectionScheme::SecondUpwind:
+      return leak_of_scheme<SecondUpwindScheme>(c, terms, fixed_rows, moving_rows);
+    case AdvectionScheme::Koren:
+      return leak_of_scheme<KorenScheme>(c, terms, fixed_rows, moving_rows);
+    case AdvectionScheme::Central:
+      return leak_of_scheme<CentralScheme>(c, terms, fixed_rows, moving_rows);
+    case AdvectionScheme::None:
+      break;
+  }
+  return 0;
 }
 
 }  // namespace peclet::flow

@@ -40,6 +40,11 @@ void compute_momentum_residual(int c, const MomentumTerms& terms, const SweepPla
                                const WallRows& fixed_rows, const WallRows& moving_rows, const Field<Real>& residual);
 
 
+/// Sum over the fluid of -A(v) of component c: fluxes between fluid points cancel, those towards walls and the
+/// wall rows' v_c div(v) do not. This error, of first order in the spacing, is momentum that neither the fluid nor
+/// a body would have; it is returned to the fluid as a uniform acceleration.
+Real advective_leak(int c, const MomentumTerms& terms, const WallRows& fixed_rows, const WallRows& moving_rows);
+
 /// No flux: Stokes flow.
 struct NoAdvection {};
 

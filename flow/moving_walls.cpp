@@ -45,14 +45,14 @@ KOKKOS_INLINE_FUNCTION Real swept_flux(const SolidSampler& solid, const FaceVect
   if (fraction == fully_open) return 0;
   Vec3 x = solid.grid.face_center(axis, i, j, k);
   const int body = nearest_owner(solid, axis, p, x);
-  if (body < 0) return 0;
+  const NarrowGap gap = narrow_gap(solid, axis, i, j, k);
   if (fraction > 0) {
     const FaceOpening face = face_opening(solid, axis, i, j, k, body, body);
     const int s = (axis + 1) % 3, t = (axis + 2) % 3;
     x[s] += face.closed_s * solid.grid.spacing[s];
     x[t] += face.closed_t * solid.grid.spacing[t];
   }
-  return (1 - fraction * open_fraction_unit) * solid.geometry.velocity(body, x)[axis];
+  return (1 - fraction * open_fraction_unit) * wall_velocity(solid, gap, body, axis, x);
 }
 
 }  // namespace
@@ -112,10 +112,10 @@ void refresh_body_faces(int c, const SolidSampler& solid, const BodyFaces& faces
   const Layout layout = solid.sdf.layout();
   for_each(
       "flow::refresh_body_faces", faces.count, KOKKOS_LAMBDA(Index n) {
-        const int body = target.owner(n);
         const Int3 cell = cell_of(layout, target.face(n));
         const Vec3 x = sampler.grid.face_center(c, cell[0], cell[1], cell[2]);
-        target.velocity(n) = body < 0 ? 0.0 : sampler.geometry.velocity(body, x)[c];
+        const NarrowGap gap = narrow_gap(sampler, c, cell[0], cell[1], cell[2]);
+        target.velocity(n) = wall_velocity(sampler, gap, target.owner(n), c, x);
       });
 }
 

@@ -8,7 +8,7 @@
 namespace peclet::flow {
 
 /// Smallest open fraction of a face whose centre is fluid: a fluid face is never closed.
-inline constexpr OpenFraction smallest_open_fraction = fully_open / 256;
+inline constexpr OpenFraction smallest_open_fraction = fully_open / 4;
 
 /// Distance to the bodies that own the two cells beside a face, callable in kernels.
 struct SolidSampler {
@@ -143,6 +143,49 @@ KOKKOS_INLINE_FUNCTION Real wall_crossing(const SolidSampler& solid, int owner_a
     }
   }
   return root;
+}
+
+/// A gap of less than one cell between two bodies that can move against each other.
+struct NarrowGap {
+  int first = no_owner, second = no_owner;  // the nearer body and the other one
+  Real share = 0;                           // of the other one in the common motion: 0 (no gap) to 1/2 (touching)
+};
+
+/// The gap around the low face of cell (i, j, k) along axis. Bodies are staircases of closed faces; where two of
+/// them come within a cell, the stairs would mesh like gear teeth, and sliding past each other would squeeze the
+/// cells between them. Faces in the gap therefore take part in a common motion of both.
+KOKKOS_INLINE_FUNCTION NarrowGap narrow_gap(const SolidSampler& solid, int axis, int i, int j, int k) {
+  const Layout& layout = solid.sdf.layout();
+  const Index p = layout(i, j, k), q = p - layout.stride(axis);
+  NarrowGap gap;
+  gap.first = solid.owner[p];
+  int other = solid.owner[q];
+  for (int n = 0; n < 12 && other == gap.first; ++n) {
+    const Index step = (n & 1 ? 1 : -1) * layout.stride(n / 4);
+    other = solid.owner[(n & 2 ? p : q) + step];
+  }
+  if (other == gap.first || other == no_owner || gap.first == no_owner) return gap;
+  const bool one_moves = (gap.first >= 0 && solid.geometry.bodies(gap.first).dynamic) ||
+                         (other >= 0 && solid.geometry.bodies(other).dynamic);
+  if (!one_moves) return gap;
+  const Vec3 x = solid.grid.face_center(axis, i, j, k);
+  const Real here = solid.distance(gap.first, x), there = solid.distance(other, x);
+  gap.second = other;
+  if (there < here) {
+    gap.second = gap.first;
+    gap.first = other;
+  }
+  const Real width = (here + there) / solid.grid.spacing[axis];
+  if (width < 1) gap.share = width > 0 ? 0.5 * (1 - width) : 0.5;
+  return gap;
+}
+
+/// Velocity along axis, at x near a closed face, of the walls there: of body, or of both sides of a narrow gap.
+KOKKOS_INLINE_FUNCTION Real wall_velocity(const SolidSampler& solid, const NarrowGap& gap, int body, int axis, Vec3 x) {
+  if (gap.share == 0) return body >= 0 ? solid.geometry.velocity(body, x)[axis] : 0.0;
+  const Real first = gap.first >= 0 ? solid.geometry.velocity(gap.first, x)[axis] : 0.0;
+  const Real second = gap.second >= 0 ? solid.geometry.velocity(gap.second, x)[axis] : 0.0;
+  return first + gap.share * (second - first);
 }
 
 }  // namespace peclet::flow

@@ -55,6 +55,18 @@ void mask_closed_faces(const RowRanges& whole, const FaceVector<OpenFraction>& o
       });
 }
 
+/// Sum of u - u_old over the open faces of one component.
+Real sum_of_change(const RowRanges& rows, const Field<OpenFraction>& open, const Field<Real>& velocity,
+                   const Field<Real>& previous) {
+  const Field<OpenFraction> o = open;
+  const Field<Real> u = velocity, old = previous;
+  return sum_cells(
+      "flow::sum_of_change", rows, KOKKOS_LAMBDA(int i, int j, int k) {
+        const Index p = u.layout()(i, j, k);
+        return o[p] ? u[p] - old[p] : 0.0;
+      });
+}
+
 Real divergence_in_open_cells(const RowRanges& rows, const FaceVector<OpenFraction>& open, const Field<Real>& divergence) {
   const FaceVector<OpenFraction> o = open;
   const Field<Real> div = divergence;
@@ -77,6 +89,13 @@ Real body_volume(const BodyGeometry& geometry, const Grid& grid, int b, const Bo
                const Real fraction = 0.5 - bodies.distance(b, grid.cell_center(i, j, k)) / h;
                return fraction < 0 ? 0.0 : (fraction > 1 ? 1.0 : fraction);
              });
+}
+
+/// Number of fluid points of one component.
+Real count_open_faces(const RowRanges& rows, const Field<OpenFraction>& open) {
+  const Field<OpenFraction> o = open;
+  return sum_cells(
+      "flow::count_open_faces", rows, KOKKOS_LAMBDA(int i, int j, int k) { return o(i, j, k) ? 1.0 : 0.0; });
 }
 
 Real smallest_spacing(const Grid& grid) { return std::min({grid.spacing[0], grid.spacing[1], grid.spacing[2]}); }
@@ -229,7 +248,7 @@ void Solver::step() {
   times_ = {};
   times_.geometry = geometry_time;
 
-  const MomentumTerms terms = momentum_terms();
+  MomentumTerms terms = momentum_terms();
   const Real velocity_scale =
       extrapolate_velocity(plan_, boundary_.rows(), velocity_, previous_, terms.step_ratio, extrapolated_);
   for (int c = 0; c < 3; ++c) {
@@ -237,6 +256,8 @@ void Solver::step() {
     fill_periodic_ghosts(extrapolated_[c], periodic_);
   }
   fill_periodic_ghosts(pressure_, periodic_, 1);
+
+  return_advective_leak(terms);
 
   predict_velocity(terms, velocity_scale);
   std::swap(velocity_, previous_);  // velocity_ is now the predicted one
@@ -246,6 +267,14 @@ void Solver::step() {
   previous_time_step_ = settings_.time_step;
   time_ += settings_.time_step;
   ++steps_;
+}
+
+void Solver::return_advective_leak(MomentumTerms& terms) {
+  const Stopwatch watch(times_.momentum);
+  for (int c = 0; c < 3; ++c) {
+    const Real leak = advective_leak(c, terms, boundary_.fixed_rows(c), boundary_.moving_rows(c));
+    if (leak != 0) terms.acceleration[c] += leak / fluid_points(c);
+  }
 }
 
 void Solver::predict_velocity(const MomentumTerms& terms, Real velocity_scale) {
@@ -335,6 +364,17 @@ Real Solver::largest_open_divergence() {
   for (int c = 0; c < 3; ++c) fill_periodic_ghosts(velocity_[c], periodic_, 1);
   compute_divergence(grid_, plan_, boundary_.rows(), boundary_.open(), boundary_.cut_cells(), velocity_, divergence_);
   return divergence_in_open_cells(boundary_.rows(), boundary_.open(), divergence_);
+}
+
+Real Solver::fluid_points(int c) const { return count_open_faces(boundary_.rows(), boundary_.open()[c]); }
+
+Vec3 Solver::momentum_change() const {
+  require_state(previous_time_step_ > 0, "momentum_change(): call step() first");
+  const Real scale = settings_.density * grid_.cell_volume() / previous_time_step_;
+  Vec3 change;
+  for (int c = 0; c < 3; ++c)
+    change[c] = scale * sum_of_change(boundary_.rows(), boundary_.open()[c], velocity_[c], previous_[c]);
+  return change;
 }
 
 Real Solver::largest_velocity() const { return largest_component(boundary_.rows(), velocity_); }

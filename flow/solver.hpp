@@ -53,6 +53,10 @@ class Solver {
   const StepTimes& times() const { return times_; }
   Real largest_open_divergence();
   Real largest_velocity() const;
+  /// Density / dt times the velocity change in the last step, summed over fluid faces, times the cell volume.
+  Vec3 momentum_change() const;
+  /// Number of fluid points of velocity component c.
+  Real fluid_points(int c) const;
 
   const FaceVector<Real>& velocity() const { return velocity_; }
   const Field<Real>& pressure() const { return pressure_; }
@@ -67,6 +71,7 @@ class Solver {
   std::size_t bytes() const;
 
  private:
+  void return_advective_leak(MomentumTerms& terms);
   void predict_velocity(const MomentumTerms& terms, Real velocity_scale);
   void project_velocity(Real velocity_scale, Real implicit_weight);
   void impose_body_motion();

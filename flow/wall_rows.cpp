@@ -43,7 +43,7 @@ KOKKOS_INLINE_FUNCTION void fill_row(const WallRows& rows, Index row, int c, con
       const Real crossing = wall_crossing(solid, wall, nearest, x, y);
       distance[s] = crossing > smallest_wall_distance ? crossing : smallest_wall_distance;
     }
-    const Real total = distance[0] + distance[1];
+    const Real total = Kokkos::fmax(distance[0] + distance[1], narrowest_stencil);
     rows.weight(row, 2 * a) = static_cast<float>(2 / (distance[0] * total));
     rows.weight(row, 2 * a + 1) = static_cast<float>(2 / (distance[1] * total));
   }

@@ -8,7 +8,11 @@
 namespace peclet::flow {
 
 /// Smallest distance to a wall, in spacings, that enters a stencil: bounds the coefficients.
-inline constexpr Real smallest_wall_distance = 1e-3;
+inline constexpr Real smallest_wall_distance = 1e-2;
+
+/// Between two walls closer than this, in spacings, a stencil keeps this width: the forces that the two exchange
+/// through it stay those of the fluid in the gap.
+inline constexpr Real narrowest_stencil = 1;
 
 /// Rows of one velocity component. Direction d = 2 a + s is the low (s = 0) or high (s = 1) neighbour along
 /// axis a. Along each axis, with wall (or neighbour) distances l and h in spacings [ShortleyWeller1938],
@@ -27,11 +31,11 @@ struct WallRows {
 
   KOKKOS_INLINE_FUNCTION bool is_wall(Index row, int d) const { return (walls(row) >> d) & 1; }
 
-  /// Distance to the wall in direction d, in spacings: from w_l = 2 / (l S), w_h = 2 / (h S), S = l + h.
+  /// Distance to the wall in direction d, in spacings: from w_l = 2 / (l S), w_h = 2 / (h S), S = l + h or 1.
   KOKKOS_INLINE_FUNCTION Real wall_distance(Index row, int d) const {
     const Real w = weight(row, d), other = weight(row, d ^ 1);
-    const Real total = Kokkos::sqrt(2 * (1 / w + 1 / other));
-    return 2 / (w * total);
+    const Real total = 2 * (1 / w + 1 / other);
+    return 2 / (w * (total > narrowest_stencil ? Kokkos::sqrt(total) : narrowest_stencil));
   }
 
   void reserve(Index capacity);

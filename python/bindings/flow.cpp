@@ -259,6 +259,11 @@ void define_results(nb::class_<Solver>& solver) {
       .def("assign_pressure", [](Solver& s, nb::handle p) { python::assign(s.pressure(), p, "p"); })
       .def("largest_open_divergence", &Solver::largest_open_divergence)
       .def("largest_velocity", &Solver::largest_velocity)
+      .def("momentum_change",
+           [](const Solver& s) {
+             const Vec3 change = s.momentum_change();
+             return std::array<double, 3>{change.x, change.y, change.z};
+           })
       .def("velocity_report", [](const Solver& s) { return report(s.velocity_report()); })
       .def("pressure_report", [](const Solver& s) { return report(s.pressure_report()); })
       .def("times", &times)
