@@ -9,8 +9,7 @@ namespace peclet {
 
 /// Throws std::invalid_argument("<argument>: expected <expected>, found <found>") unless ok.
 template <class Found>
-void require(bool ok, const std::string& argument, const std::string& expected,
-             const Found& found) {
+void require(bool ok, const std::string& argument, const std::string& expected, const Found& found) {
   if (ok) return;
   std::ostringstream message;
   message << argument << ": expected " << expected << ", found " << found;
@@ -18,7 +17,9 @@ void require(bool ok, const std::string& argument, const std::string& expected,
 }
 
 /// "name[n]"
-inline std::string indexed(const std::string& name, long long n) { return name + "[" + std::to_string(n) + "]"; }
+inline std::string indexed(const std::string& name, long long n) {
+  return name + "[" + std::to_string(n) + "]";
+}
 
 inline void require_finite(double value, const std::string& argument) {
   require(std::isfinite(value), argument, "a finite number", value);

@@ -22,9 +22,7 @@ struct Box {
   Int3 low{0, 0, 0}, high{0, 0, 0};
 
   KOKKOS_INLINE_FUNCTION int extent(int axis) const { return high[axis] - low[axis]; }
-  KOKKOS_INLINE_FUNCTION Index size() const {
-    return static_cast<Index>(extent(0)) * extent(1) * extent(2);
-  }
+  KOKKOS_INLINE_FUNCTION Index size() const { return static_cast<Index>(extent(0)) * extent(1) * extent(2); }
   KOKKOS_INLINE_FUNCTION bool contains(int i, int j, int k) const {
     return i >= low[0] && i < high[0] && j >= low[1] && j < high[1] && k >= low[2] && k < high[2];
   }
@@ -51,7 +49,10 @@ template <class Body>
 void for_each(const std::string& label, Index count, const Body& body) {
   if (count <= 0) return;
   Kokkos::parallel_for(
-      label, Kokkos::RangePolicy<ExecutionSpace, Kokkos::IndexType<Index>, Kokkos::Schedule<Kokkos::Static>>(0, count), body);
+      label,
+      Kokkos::RangePolicy<ExecutionSpace, Kokkos::IndexType<Index>, Kokkos::Schedule<Kokkos::Static>>(0,
+                                                                                                      count),
+      body);
 }
 
 /// body(i, j, k) on every cell of the ranges.
@@ -111,7 +112,7 @@ Real sum_cells(const std::string& label, const RowRanges& ranges, const Body& bo
     const Index nx = box.extent(0);
     Kokkos::parallel_reduce(
         label, Kokkos::RangePolicy<ExecutionSpace, Kokkos::IndexType<Index>>(0, box.size()),
-        KOKKOS_LAMBDA(Index n, Real& sum) {
+        KOKKOS_LAMBDA(Index n, Real & sum) {
           const Index row = n / nx;
           const int i = box.low[0] + static_cast<int>(n % nx);
           if (i >= ranges.begin(row) && i < ranges.end(row))
@@ -151,11 +152,12 @@ Real max_cells(const std::string& label, const RowRanges& ranges, const Body& bo
     const Index nx = box.extent(0);
     Kokkos::parallel_reduce(
         label, Kokkos::RangePolicy<ExecutionSpace, Kokkos::IndexType<Index>>(0, box.size()),
-        KOKKOS_LAMBDA(Index n, Real& maximum) {
+        KOKKOS_LAMBDA(Index n, Real & maximum) {
           const Index row = n / nx;
           const int i = box.low[0] + static_cast<int>(n % nx);
           if (i < ranges.begin(row) || i >= ranges.end(row)) return;
-          const Real value = body(i, box.low[1] + static_cast<int>(row % ny), box.low[2] + static_cast<int>(row / ny));
+          const Real value =
+              body(i, box.low[1] + static_cast<int>(row % ny), box.low[2] + static_cast<int>(row / ny));
           maximum = value > maximum ? value : maximum;
         },
         Kokkos::Max<Real>(largest));
@@ -199,11 +201,12 @@ MaxAndSum max_and_sum_cells(const std::string& label, const RowRanges& ranges, c
     const Index nx = box.extent(0);
     Kokkos::parallel_reduce(
         label, Kokkos::RangePolicy<ExecutionSpace, Kokkos::IndexType<Index>>(0, box.size()),
-        KOKKOS_LAMBDA(Index n, Real& maximum, Real& sum) {
+        KOKKOS_LAMBDA(Index n, Real & maximum, Real & sum) {
           const Index row = n / nx;
           const int i = box.low[0] + static_cast<int>(n % nx);
           if (i < ranges.begin(row) || i >= ranges.end(row)) return;
-          const Real value = body(i, box.low[1] + static_cast<int>(row % ny), box.low[2] + static_cast<int>(row / ny));
+          const Real value =
+              body(i, box.low[1] + static_cast<int>(row % ny), box.low[2] + static_cast<int>(row / ny));
           const Real magnitude = value < 0 ? -value : value;
           maximum = magnitude > maximum ? magnitude : maximum;
           sum += value;
@@ -225,9 +228,8 @@ void for_each_entry(const std::string& label, int columns, int rows, const Body&
     }
   } else {
     for_each(
-        label, static_cast<Index>(columns) * rows, KOKKOS_LAMBDA(Index n) {
-          body(static_cast<int>(n % columns), static_cast<int>(n / columns));
-        });
+        label, static_cast<Index>(columns) * rows,
+        KOKKOS_LAMBDA(Index n) { body(static_cast<int>(n % columns), static_cast<int>(n / columns)); });
   }
 }
 
@@ -244,14 +246,14 @@ void for_each_ordered_on_host(const std::string& label, Index count, const Body&
 
 /// body(i, j, k, sum, squares, largest) adds to two sums and raises a maximum, in one pass.
 template <class Body>
-void reduce_cells(const std::string& label, const RowRanges& ranges, const Body& body, Real& sum, Real& squares,
-                  Real& largest) {
+void reduce_cells(const std::string& label, const RowRanges& ranges, const Body& body, Real& sum,
+                  Real& squares, Real& largest) {
   const Box box = ranges.box;
   const Index nx = box.extent(0), ny = box.extent(1);
   if (box.size() <= 0) return;
   Kokkos::parallel_reduce(
       label, Kokkos::RangePolicy<ExecutionSpace, Kokkos::IndexType<Index>>(0, box.size()),
-      KOKKOS_LAMBDA(Index n, Real& s, Real& q, Real& m) {
+      KOKKOS_LAMBDA(Index n, Real & s, Real & q, Real & m) {
         const Index row = n / nx;
         const int i = box.low[0] + static_cast<int>(n % nx);
         if (i >= ranges.begin(row) && i < ranges.end(row))
@@ -267,8 +269,9 @@ Real sum_each(const std::string& label, Index count, const Body& body) {
   if (count > 0)
     Kokkos::parallel_reduce(
         label,
-        Kokkos::RangePolicy<ExecutionSpace, Kokkos::IndexType<Index>, Kokkos::Schedule<Kokkos::Static>>(0, count),
-        KOKKOS_LAMBDA(Index n, Real& sum) { sum += body(n); }, total);
+        Kokkos::RangePolicy<ExecutionSpace, Kokkos::IndexType<Index>, Kokkos::Schedule<Kokkos::Static>>(
+            0, count),
+        KOKKOS_LAMBDA(Index n, Real & sum) { sum += body(n); }, total);
   return total;
 }
 
@@ -279,7 +282,7 @@ Index enumerate(const std::string& label, Index count, const Array<Index>& posit
   if (count > 0)
     Kokkos::parallel_scan(
         label, Kokkos::RangePolicy<ExecutionSpace, Kokkos::IndexType<Index>>(0, count),
-        KOKKOS_LAMBDA(Index n, Index& running, bool is_final) {
+        KOKKOS_LAMBDA(Index n, Index & running, bool is_final) {
           const bool kept = keep(n);
           if (is_final) positions(n) = running;
           if (kept) ++running;
@@ -295,7 +298,7 @@ Real max_each(const std::string& label, Index count, const Body& body) {
   if (count > 0)
     Kokkos::parallel_reduce(
         label, Kokkos::RangePolicy<ExecutionSpace, Kokkos::IndexType<Index>>(0, count),
-        KOKKOS_LAMBDA(Index n, Real& maximum) {
+        KOKKOS_LAMBDA(Index n, Real & maximum) {
           const Real value = body(n);
           if (value > maximum) maximum = value;
         },
@@ -305,11 +308,12 @@ Real max_each(const std::string& label, Index count, const Body& body) {
 
 /// offsets[n] = sum of amount(m) over m < n, for 0 <= n <= count; returns the whole sum.
 template <class Amount>
-Index exclusive_sum(const std::string& label, Index count, const Array<Index>& offsets, const Amount& amount) {
+Index exclusive_sum(const std::string& label, Index count, const Array<Index>& offsets,
+                    const Amount& amount) {
   Index total = 0;
   Kokkos::parallel_scan(
       label, Kokkos::RangePolicy<ExecutionSpace, Kokkos::IndexType<Index>>(0, count + 1),
-      KOKKOS_LAMBDA(Index n, Index& running, bool is_final) {
+      KOKKOS_LAMBDA(Index n, Index & running, bool is_final) {
         if (is_final) offsets(n) = running;
         if (n < count) running += amount(n);
       },
@@ -322,7 +326,9 @@ template <class Body>
 void for_each_from(const std::string& label, Index first, Index last, const Body& body) {
   if (first >= last) return;
   Kokkos::parallel_for(
-      label, Kokkos::RangePolicy<ExecutionSpace, Kokkos::IndexType<Index>, Kokkos::Schedule<Kokkos::Static>>(first, last),
+      label,
+      Kokkos::RangePolicy<ExecutionSpace, Kokkos::IndexType<Index>, Kokkos::Schedule<Kokkos::Static>>(first,
+                                                                                                      last),
       body);
 }
 

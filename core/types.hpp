@@ -19,7 +19,6 @@ using Int3 = Kokkos::Array<int, 3>;
 using Real3 = Kokkos::Array<Real, 3>;
 
 /// True where kernels run on the host, so that rows can be walked by one thread.
-inline constexpr bool runs_on_host =
-    Kokkos::SpaceAccessibility<Kokkos::HostSpace, MemorySpace>::accessible;
+inline constexpr bool runs_on_host = Kokkos::SpaceAccessibility<Kokkos::HostSpace, MemorySpace>::accessible;
 
 }  // namespace peclet

@@ -39,10 +39,8 @@ struct Quaternion {
 KOKKOS_INLINE_FUNCTION Quaternion conjugate(Quaternion q) { return {-q.x, -q.y, -q.z, q.w}; }
 
 KOKKOS_INLINE_FUNCTION Quaternion operator*(Quaternion a, Quaternion b) {
-  return {a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
-          a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
-          a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w,
-          a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z};
+  return {a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y, a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
+          a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w, a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z};
 }
 
 KOKKOS_INLINE_FUNCTION Quaternion normalized(Quaternion q) {

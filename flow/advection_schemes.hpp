@@ -38,7 +38,8 @@ struct CentralScheme {
 /// Face value between left and right for a given sign of the carrying velocity; the four points are
 /// consecutive along the axis.
 template <class Scheme>
-KOKKOS_INLINE_FUNCTION Real carried_value(Real carrier, Real left_far, Real left, Real right, Real right_far) {
+KOKKOS_INLINE_FUNCTION Real carried_value(Real carrier, Real left_far, Real left, Real right,
+                                          Real right_far) {
   const bool positive = carrier > 0;
   const Real far = positive ? left_far : right_far;
   const Real upwind = positive ? left : right;

@@ -182,7 +182,8 @@ Index count_image_overlap(const Grid& grid, const BodyGeometry& geometry, int co
           const Body& body = bodies.bodies(b);
           solid = solid || bodies.distance(b, x) < 0;
           // a body that fits into the box has no image of its own to collide with
-          const Real alone = body.meets_images ? bodies.program.distance(body.slot, body.pose, x) : bodies.distance(b, x);
+          const Real alone =
+              body.meets_images ? bodies.program.distance(body.slot, body.pose, x) : bodies.distance(b, x);
           unshifted = unshifted || alone < 0;
         }
         return solid && !unshifted ? 1.0 : 0.0;

@@ -15,18 +15,20 @@ struct Body {
   int slot = 0;
   Pose pose;
   Twist twist;
-  Vec3 center;                  // of rotation
-  Vec3 local_low, local_high;   // bounds in the frame of the root
-  bool wide = false;            // reaches beyond half a period: images other than the nearest matter
-  bool meets_images = false;    // longer than a period
-  bool dynamic = false;         // re-sampled at every geometry update
+  Vec3 center;                 // of rotation
+  Vec3 local_low, local_high;  // bounds in the frame of the root
+  bool wide = false;           // reaches beyond half a period: images other than the nearest matter
+  bool meets_images = false;   // longer than a period
+  bool dynamic = false;        // re-sampled at every geometry update
 
   /// Velocity of the rigid motion at x: U + Omega x (x - center), nearest image of the arm.
-  KOKKOS_INLINE_FUNCTION Vec3 velocity_from_arm(Vec3 arm) const { return twist.linear + cross(twist.angular, arm); }
+  KOKKOS_INLINE_FUNCTION Vec3 velocity_from_arm(Vec3 arm) const {
+    return twist.linear + cross(twist.angular, arm);
+  }
 };
 
 struct Period {
-  Vec3 length;         // of the box
+  Vec3 length;  // of the box
   bool axis[3] = {false, false, false};
 
   /// Nearest periodic image of a difference of two positions.
@@ -68,7 +70,8 @@ struct BodyGeometry {
     Real d = nearest_image;
     for (int n = 0; n < 27; ++n) {
       const int s[3] = {n % 3 - 1, (n / 3) % 3 - 1, n / 9 - 1};
-      if (n == 13 || (s[0] && !images.axis[0]) || (s[1] && !images.axis[1]) || (s[2] && !images.axis[2])) continue;
+      if (n == 13 || (s[0] && !images.axis[0]) || (s[1] && !images.axis[1]) || (s[2] && !images.axis[2]))
+        continue;
       const Vec3 image = x + Vec3{s[0] * images.length.x, s[1] * images.length.y, s[2] * images.length.z};
       const Vec3 local = to_local(body.pose, image);
       const Real lower = body.pose.scale * distance_to_bounds(body, local);

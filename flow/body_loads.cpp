@@ -4,7 +4,7 @@ namespace peclet::flow {
 namespace {
 
 /// Bins of one body.
-enum Bin : int { Viscous = 0, Pressure = 3, Torque = 6, WettedArea = 9, bins_per_body = 10 };
+enum Bin : int { Viscous = 0, Pressure = 3, Torque = 6, bins_per_body = 9 };
 
 /// Adds a force along axis c that acts at x; walls without an instance share the last set of bins.
 struct LoadAdder {
@@ -56,9 +56,9 @@ void add_wall_tractions(int c, const MomentumTerms& terms, const SolidSampler& s
             const Index q = d % 2 ? p - layout.stride(a) : p + layout.stride(a);
             laplacian += (w.weight(row, d ^ 1) - 1) * (v[q] + t.implicit_weight * e[q] - here);
           }
-          const Real viscous = -t.density * t.kinematic_viscosity * volume * inverse[a] * inverse[a] * laplacian;
+          const Real viscous =
+              -t.density * t.kinematic_viscosity * volume * inverse[a] * inverse[a] * laplacian;
           loads.add(chunk, owner, Viscous, c, viscous, wall);
-          loads.bins.add(chunk, loads.first_bin(owner) + WettedArea, 1.0);
         }
       });
 }
@@ -81,9 +81,11 @@ void add_wall_pressure(int c, const SolidSampler& solid, const WallRows& rows, c
         low[c] -= grid.spacing[c];
         const Index m = n - p.layout().stride(c);
         if (w.is_wall(row, 2 * c))
-          loads.add(chunk, w.owner(row, 2 * c), Pressure, c, -area * (p[m] + implicit_viscosity * div[m]), low);
+          loads.add(chunk, w.owner(row, 2 * c), Pressure, c, -area * (p[m] + implicit_viscosity * div[m]),
+                    low);
         if (w.is_wall(row, 2 * c + 1))
-          loads.add(chunk, w.owner(row, 2 * c + 1), Pressure, c, area * (p[n] + implicit_viscosity * div[n]), high);
+          loads.add(chunk, w.owner(row, 2 * c + 1), Pressure, c, area * (p[n] + implicit_viscosity * div[n]),
+                    high);
       });
 }
 
@@ -96,14 +98,12 @@ Vec3 triple(const std::vector<Real>& sums, std::size_t first) {
 void LoadCollector::start(int number_of_bodies) {
   bodies_ = number_of_bodies;
   sums_.reset(bins_per_body * (number_of_bodies + 1));
-  left_over_ = {};
 }
 
 void LoadCollector::add_momentum(int c, const MomentumTerms& terms, const SolidSampler& solid,
-                                 const WallRows& fixed_rows, const WallRows& moving_rows, const Field<Real>& correction,
-                                 Real residual_sum) {
+                                 const WallRows& fixed_rows, const WallRows& moving_rows,
+                                 const Field<Real>& correction) {
   const LoadAdder adder{sums_.bins(), solid.geometry, bodies_};
-  left_over_[c] = residual_sum * terms.density * terms.grid.cell_volume() / terms.time_step;
   add_wall_tractions(c, terms, solid, fixed_rows, correction, adder, sums_);
   add_wall_tractions(c, terms, solid, moving_rows, correction, adder, sums_);
 }
@@ -118,14 +118,11 @@ void LoadCollector::add_pressure(int c, const SolidSampler& solid, const WallRow
 
 std::vector<BodyLoad> LoadCollector::finish(const std::vector<Vec3>& spin_resistance) {
   const std::vector<Real> sums = sums_.totals();
-  Real wetted = 0;
-  for (std::size_t b = 0; b <= static_cast<std::size_t>(bodies_); ++b) wetted += sums[b * bins_per_body + WettedArea];
   std::vector<BodyLoad> loads(static_cast<std::size_t>(bodies_));
   for (std::size_t b = 0; b < loads.size(); ++b) {
     const std::size_t first = b * bins_per_body;
     BodyLoad& load = loads[b];
     load.viscous_force = triple(sums, first + Viscous);
-    if (wetted > 0) load.viscous_force += (sums[first + WettedArea] / wetted) * left_over_;
     load.pressure_force = triple(sums, first + Pressure);
     load.force = load.viscous_force + load.pressure_force;
     load.torque = triple(sums, first + Torque) - spin_resistance[b];

@@ -4,8 +4,7 @@
 //   viscous    the wall part of nu L (v + theta e), which acts at the wall,
 //   pressure   (p at the wall cell) on faces whose neighbour along their own axis is closed,
 // and is given to the body that owns the wall. Advection hands nothing to walls, see advective_leak(). So
-//   sum of forces = f N - rho / dt sum (u_new - u)   over the N fluid points, to rounding:
-// the momentum that the iterative solver left over is shared out by wetted area.
+//   sum of forces = f N - rho / dt sum (u_new - u)   over the N fluid points, to rounding.
 //
 // Torques are moments of the same terms about the centre of rotation, plus the transposed part of the viscous
 // stress, which on a rigid no-slip wall integrates to -2 mu V Omega for a body of volume V.
@@ -25,10 +24,11 @@ struct BodyLoad {
 class LoadCollector {
  public:
   void start(int number_of_bodies);
-  /// correction: e of component c, ghosts filled. residual_sum: what the viscous solve left over.
+  /// correction: e of component c, ghosts filled.
   void add_momentum(int c, const MomentumTerms& terms, const SolidSampler& solid, const WallRows& fixed_rows,
-                    const WallRows& moving_rows, const Field<Real>& correction, Real residual_sum);
-  /// The pressure whose gradient acted in this step is  p + theta mu div F(u*), p the updated one; ghosts filled.
+                    const WallRows& moving_rows, const Field<Real>& correction);
+  /// The pressure whose gradient acted in this step is  p + theta mu div F(u*), p the updated one; ghosts
+  /// filled.
   void add_pressure(int c, const SolidSampler& solid, const WallRows& fixed_rows, const WallRows& moving_rows,
                     const Field<Real>& pressure, const Field<Real>& divergence, Real implicit_viscosity);
   /// One load per body. spin_resistance[b] = 2 mu V Omega of body b.
@@ -37,7 +37,6 @@ class LoadCollector {
  private:
   ScatterSum sums_;
   int bodies_ = 0;
-  Vec3 left_over_;
 };
 
 }  // namespace peclet::flow

@@ -25,8 +25,9 @@ void sample_body(const SolidSampler& solid, const RegionList& regions) {
 }
 
 /// Distance and owner of every cell in the regions: fixed solid or any of the overlapping moving bodies.
-void sample_region_cells(const SolidSampler& solid, const Field<Real>& fixed_sdf, const Field<int>& fixed_owner,
-                         const Field<std::uint8_t>& in_region, const RegionList& regions) {
+void sample_region_cells(const SolidSampler& solid, const Field<Real>& fixed_sdf,
+                         const Field<int>& fixed_owner, const Field<std::uint8_t>& in_region,
+                         const RegionList& regions) {
   const RegionView region = regions.view();
   const SolidSampler target = solid;
   for_each(
@@ -51,8 +52,8 @@ void sample_region_cells(const SolidSampler& solid, const Field<Real>& fixed_sdf
       });
 }
 
-/// Fraction of the low face of cell (i, j, k) along axis. The face is fluid where the mean distance of its two
-/// cells is not negative; a fluid face is never quite closed, so that fluid and open mean the same.
+/// Fraction of the low face of cell (i, j, k) along axis. The face is fluid where the mean distance of its
+/// two cells is not negative; a fluid face is never quite closed, so that fluid and open mean the same.
 KOKKOS_INLINE_FUNCTION OpenFraction open_fraction_at(const SolidSampler& solid, int axis, int i, int j, int k,
                                                      Real half_diagonal) {
   const Index p = solid.sdf.layout()(i, j, k);
@@ -83,7 +84,8 @@ void open_all_faces(const SolidSampler& solid, const FaceVector<OpenFraction>& o
       });
 }
 
-void open_region_faces(const SolidSampler& solid, const FaceVector<OpenFraction>& open, const RegionList& regions) {
+void open_region_faces(const SolidSampler& solid, const FaceVector<OpenFraction>& open,
+                       const RegionList& regions) {
   const RegionView region = regions.view();
   const SolidSampler sampler = solid;
   const FaceVector<OpenFraction> target = open;
@@ -93,7 +95,8 @@ void open_region_faces(const SolidSampler& solid, const FaceVector<OpenFraction>
         const RegionCell cell = region.cell(n);
         if (!cell.unique) return;
         for (int a = 0; a < 3; ++a)
-          target[a](cell.i, cell.j, cell.k) = open_fraction_at(sampler, a, cell.i, cell.j, cell.k, half_diagonal);
+          target[a](cell.i, cell.j, cell.k) =
+              open_fraction_at(sampler, a, cell.i, cell.j, cell.k, half_diagonal);
       });
 }
 
@@ -106,7 +109,8 @@ void mark_superseded(const Field<std::uint8_t>& in_region, const WallRows& rows)
 }
 
 /// Pressure of closed cells beside open ones := mean over the open neighbours.
-void extrapolate_pressure(const FaceVector<OpenFraction>& open, const RegionList& regions, const Field<Real>& pressure) {
+void extrapolate_pressure(const FaceVector<OpenFraction>& open, const RegionList& regions,
+                          const Field<Real>& pressure) {
   const RegionView region = regions.view();
   const FaceVector<OpenFraction> fraction = open;
   const Field<Real> p = pressure;
@@ -243,7 +247,8 @@ void ImmersedBoundary::sample_fixed(Bodies& bodies) {
   rows_ = open_row_ranges(open_, grid_.cells);
   RegionList whole(grid_.cells);
   whole.assign({Box{{0, 0, 0}, grid_.cells}}, {no_owner});
-  const Array<Index> positions("flow::whole_grid_positions", static_cast<std::size_t>(whole.number_of_cells()));
+  const Array<Index> positions("flow::whole_grid_positions",
+                               static_cast<std::size_t>(whole.number_of_cells()));
   for (int c = 0; c < 3; ++c) {
     build_wall_rows(c, solid_, open_, whole, positions, fixed_rows_[c]);
     refresh_wall_velocity(c, solid_, fixed_rows_[c]);
@@ -290,7 +295,8 @@ void ImmersedBoundary::sample_moving(const RegionList& regions) {
 std::size_t ImmersedBoundary::bytes() const {
   const Index cells = Layout(grid_.cells).size;
   Index total = cells * static_cast<Index>(3 * sizeof(OpenFraction) + sizeof(Real) + sizeof(int) + 1);
-  if (fixed_sdf_.is_allocated()) total += cells * static_cast<Index>(3 * sizeof(OpenFraction) + sizeof(Real) + sizeof(int));
+  if (fixed_sdf_.is_allocated())
+    total += cells * static_cast<Index>(3 * sizeof(OpenFraction) + sizeof(Real) + sizeof(int));
   for (int c = 0; c < 3; ++c) total += fixed_rows_[c].bytes() + moving_rows_[c].bytes();
   return static_cast<std::size_t>(total);
 }

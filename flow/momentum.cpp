@@ -29,32 +29,33 @@ struct Extrapolation {
   }
 };
 
-/// u + r (u - u_old) + e
+/// u + r (u - u_old) + e + left_over
 struct Correction {
   using Result = Nothing;
   static constexpr bool may_overrun = false;
   Layout layout;
   const Real *velocity, *correction;
   Real* previous;
-  Real ratio;
+  Real ratio, left_over;
 
   struct Row {
     const Real *velocity, *correction;
     Real* previous;
-    Real ratio;
+    Real ratio, left_over;
     KOKKOS_INLINE_FUNCTION void operator()(int i) const {
-      previous[i] = velocity[i] + ratio * (velocity[i] - previous[i]) + correction[i];
+      previous[i] = velocity[i] + ratio * (velocity[i] - previous[i]) + (correction[i] + left_over);
     }
   };
   KOKKOS_INLINE_FUNCTION Row row(int j, int k) const {
     const Index n = layout(0, j, k);
-    return {velocity + n, correction + n, previous + n, ratio};
+    return {velocity + n, correction + n, previous + n, ratio, left_over};
   }
 };
 
 /// div(v v_c) at face p, conservative form.
 template <class Scheme>
-KOKKOS_INLINE_FUNCTION Real advection_at_face(const FaceVector<Real>& v, int c, Index p, const Real3& inverse_spacing) {
+KOKKOS_INLINE_FUNCTION Real advection_at_face(const FaceVector<Real>& v, int c, Index p,
+                                              const Real3& inverse_spacing) {
   const Layout& layout = v.x.layout();
   const Index own = layout.stride(c);
   const Real* q = v[c].data();
@@ -71,12 +72,15 @@ KOKKOS_INLINE_FUNCTION Real advection_at_face(const FaceVector<Real>& v, int c, 
 /// div(v v_c) - v_c div(v) at face p. Beside walls the carrying velocity is not solenoidal, because faces are
 /// partly closed; without the second term a stream that moves with the body would not stay uniform.
 template <class Scheme>
-KOKKOS_INLINE_FUNCTION Real advection_beside_wall(const FaceVector<Real>& v, int c, Index p, const Real3& inverse_spacing) {
-  return advection_at_face<Scheme>(v, c, p, inverse_spacing) - v[c][p] * carrier_divergence(v, c, p, inverse_spacing);
+KOKKOS_INLINE_FUNCTION Real advection_beside_wall(const FaceVector<Real>& v, int c, Index p,
+                                                  const Real3& inverse_spacing) {
+  return advection_at_face<Scheme>(v, c, p, inverse_spacing) -
+         v[c][p] * carrier_divergence(v, c, p, inverse_spacing);
 }
 
 template <>
-KOKKOS_INLINE_FUNCTION Real advection_beside_wall<NoAdvection>(const FaceVector<Real>&, int, Index, const Real3&) {
+KOKKOS_INLINE_FUNCTION Real advection_beside_wall<NoAdvection>(const FaceVector<Real>&, int, Index,
+                                                               const Real3&) {
   return 0;
 }
 
@@ -103,8 +107,8 @@ struct InverseSpacing {
   }
 };
 
-KOKKOS_INLINE_FUNCTION Real predictor_residual(const MomentumTerms& t, int c, Index p, Real advection, Real laplacian,
-                                               Real inverse_spacing) {
+KOKKOS_INLINE_FUNCTION Real predictor_residual(const MomentumTerms& t, int c, Index p, Real advection,
+                                               Real laplacian, Real inverse_spacing) {
   const Real gradient = inverse_spacing * (t.pressure[p] - t.pressure[p - t.pressure.layout().stride(c)]);
   const Real change = t.velocity[c][p] - t.previous[c][p];
   return t.time_step *
@@ -132,12 +136,14 @@ struct GridResidual {
 
     KOKKOS_INLINE_FUNCTION void operator()(int i) const {
       const Index own = c == 0 ? 1 : (c == 1 ? sy : sz);
-      const Real advection =
-          fx * (momentum_flux_low<Scheme>(q, vx, i + 1, own, 1) - momentum_flux_low<Scheme>(q, vx, i, own, 1)) +
-          fy * (momentum_flux_low<Scheme>(q, vy, i + sy, own, sy) - momentum_flux_low<Scheme>(q, vy, i, own, sy)) +
-          fz * (momentum_flux_low<Scheme>(q, vz, i + sz, own, sz) - momentum_flux_low<Scheme>(q, vz, i, own, sz));
-      const Real diffusion = dx * (q[i - 1] + q[i + 1]) + dy * (q[i - sy] + q[i + sy]) + dz * (q[i - sz] + q[i + sz]) -
-                             2 * (dx + dy + dz) * q[i];
+      const Real advection = fx * (momentum_flux_low<Scheme>(q, vx, i + 1, own, 1) -
+                                   momentum_flux_low<Scheme>(q, vx, i, own, 1)) +
+                             fy * (momentum_flux_low<Scheme>(q, vy, i + sy, own, sy) -
+                                   momentum_flux_low<Scheme>(q, vy, i, own, sy)) +
+                             fz * (momentum_flux_low<Scheme>(q, vz, i + sz, own, sz) -
+                                   momentum_flux_low<Scheme>(q, vz, i, own, sz));
+      const Real diffusion = dx * (q[i - 1] + q[i + 1]) + dy * (q[i - sy] + q[i + sy]) +
+                             dz * (q[i - sz] + q[i + sz]) - 2 * (dx + dy + dz) * q[i];
       residual[i] = forcing - advection - pressure_scale * (pressure[i] - pressure[i - own]) + diffusion -
                     ratio * (velocity[i] - previous[i]);
     }
@@ -170,7 +176,8 @@ struct GridResidual {
 };
 
 template <class Scheme>
-void residual_of_wall_rows(int c, const MomentumTerms& terms, const WallRows& rows, const Field<Real>& residual) {
+void residual_of_wall_rows(int c, const MomentumTerms& terms, const WallRows& rows,
+                           const Field<Real>& residual) {
   const MomentumTerms t = terms;
   const InverseSpacing inverse(terms.grid);
   const Field<Real> r = residual;
@@ -209,13 +216,15 @@ Real leak_of_rows(int c, const MomentumTerms& terms, const WallRows& rows) {
 }
 
 template <class Scheme>
-Real leak_of_scheme(int c, const MomentumTerms& terms, const WallRows& fixed_rows, const WallRows& moving_rows) {
+Real leak_of_scheme(int c, const MomentumTerms& terms, const WallRows& fixed_rows,
+                    const WallRows& moving_rows) {
   return leak_of_rows<Scheme>(c, terms, fixed_rows) + leak_of_rows<Scheme>(c, terms, moving_rows);
 }
 
 template <class Scheme, int c>
 void residual_of_component(const MomentumTerms& terms, const SweepPlan& plan, const RowRanges& rows,
-                           const WallRows& fixed_rows, const WallRows& moving_rows, const Field<Real>& residual) {
+                           const WallRows& fixed_rows, const WallRows& moving_rows,
+                           const Field<Real>& residual) {
   const GridResidual<Scheme, c> body{terms, InverseSpacing(terms.grid), residual.data()};
   sweep("flow::momentum_residual", plan, Stage{rows, body});
   residual_of_wall_rows<Scheme>(c, terms, fixed_rows, residual);
@@ -224,7 +233,8 @@ void residual_of_component(const MomentumTerms& terms, const SweepPlan& plan, co
 
 template <class Scheme>
 void residual_with_scheme(int c, const MomentumTerms& terms, const SweepPlan& plan, const RowRanges& rows,
-                          const WallRows& fixed_rows, const WallRows& moving_rows, const Field<Real>& residual) {
+                          const WallRows& fixed_rows, const WallRows& moving_rows,
+                          const Field<Real>& residual) {
   if (c == 0) residual_of_component<Scheme, 0>(terms, plan, rows, fixed_rows, moving_rows, residual);
   if (c == 1) residual_of_component<Scheme, 1>(terms, plan, rows, fixed_rows, moving_rows, residual);
   if (c == 2) residual_of_component<Scheme, 2>(terms, plan, rows, fixed_rows, moving_rows, residual);
@@ -233,30 +243,35 @@ void residual_with_scheme(int c, const MomentumTerms& terms, const SweepPlan& pl
 }  // namespace
 
 Real extrapolate_velocity(const SweepPlan& plan, const RowRanges& rows, const FaceVector<Real>& velocity,
-                          const FaceVector<Real>& previous, Real step_ratio, const FaceVector<Real>& extrapolated) {
+                          const FaceVector<Real>& previous, Real step_ratio,
+                          const FaceVector<Real>& extrapolated) {
   Real largest = 0;
   for (int c = 0; c < 3; ++c) {
-    const Extrapolation body{velocity[c].layout(), velocity[c].data(), previous[c].data(), extrapolated[c].data(),
-                             0.5 * step_ratio};
+    const Extrapolation body{velocity[c].layout(), velocity[c].data(), previous[c].data(),
+                             extrapolated[c].data(), 0.5 * step_ratio};
     const Norms norms = sweep("flow::extrapolate_velocity", plan, Stage{rows, body});
     largest = norms.largest > largest ? norms.largest : largest;
   }
   return largest;
 }
 
-void apply_correction(const SweepPlan& plan, const RowRanges& rows, Real step_ratio, const Field<Real>& velocity,
-                      const Field<Real>& correction, const Field<Real>& previous) {
-  const Correction body{velocity.layout(), velocity.data(), correction.data(), previous.data(), step_ratio};
+void apply_correction(const SweepPlan& plan, const RowRanges& rows, Real step_ratio,
+                      const Field<Real>& velocity, const Field<Real>& correction, Real left_over,
+                      const Field<Real>& previous) {
+  const Correction body{velocity.layout(), velocity.data(), correction.data(),
+                        previous.data(),   step_ratio,      left_over};
   sweep("flow::apply_correction", plan, Stage{rows, body});
 }
 
-void compute_momentum_residual(int c, const MomentumTerms& terms, const SweepPlan& plan, const RowRanges& rows,
-                               const WallRows& fixed_rows, const WallRows& moving_rows, const Field<Real>& residual) {
+void compute_momentum_residual(int c, const MomentumTerms& terms, const SweepPlan& plan,
+                               const RowRanges& rows, const WallRows& fixed_rows, const WallRows& moving_rows,
+                               const Field<Real>& residual) {
   switch (terms.scheme) {
     case AdvectionScheme::None:
       return residual_with_scheme<NoAdvection>(c, terms, plan, rows, fixed_rows, moving_rows, residual);
     case AdvectionScheme::SecondUpwind:
-      return residual_with_scheme<SecondUpwindScheme>(c, terms, plan, rows, fixed_rows, moving_rows, residual);
+      return residual_with_scheme<SecondUpwindScheme>(c, terms, plan, rows, fixed_rows, moving_rows,
+                                                      residual);
     case AdvectionScheme::Koren:
       return residual_with_scheme<KorenScheme>(c, terms, plan, rows, fixed_rows, moving_rows, residual);
     case AdvectionScheme::Central:
@@ -264,7 +279,8 @@ void compute_momentum_residual(int c, const MomentumTerms& terms, const SweepPla
   }
 }
 
-Real advective_leak(int c, const MomentumTerms& terms, const WallRows& fixed_rows, const WallRows& moving_rows) {
+Real advective_leak(int c, const MomentumTerms& terms, const WallRows& fixed_rows,
+                    const WallRows& moving_rows) {
   switch (terms.scheme) {
     case AdvectionScheme::SecondUpwind:
       return leak_of_scheme<SecondUpwindScheme>(c, terms, fixed_rows, moving_rows);

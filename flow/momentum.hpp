@@ -2,9 +2,9 @@
 // The momentum predictor. With r = dt / dt_old, extrapolated velocity v = u + r/2 (u - u_old) (at the middle
 // of the step) and correction e, the predicted velocity is u* = u + r (u - u_old) + e, where
 //   (u* - u) / dt = -A(v) - grad p / rho + f / rho + nu L (v + theta e).
-// v + theta e is second order in time at the middle of the step for every theta; stiff modes are damped to 1/3
-// per step by theta = 9/16 [AscherRuuthWetton1995, modified Crank-Nicolson]. The first step, which has no past, is
-// a step of Euler's method: r = 0, theta = 1.
+// v + theta e is second order in time at the middle of the step for every theta; stiff modes are damped to
+// 1/3 per step by theta = 9/16 [AscherRuuthWetton1995, modified Crank-Nicolson]. The first step, which has no
+// past, is a step of Euler's method: r = 0, theta = 1.
 #include "core/field.hpp"
 #include "core/sweep.hpp"
 #include "flow/advection_schemes.hpp"
@@ -21,29 +21,33 @@ struct MomentumTerms {
   FaceVector<Real> previous;      // u_old
   Field<Real> pressure;           // ghosts filled
   Real time_step = 1, density = 1, kinematic_viscosity = 0;
-  Real step_ratio = 0;            // r
-  Real implicit_weight = 1;       // theta
-  Real3 acceleration{0, 0, 0};    // f / rho
+  Real step_ratio = 0;          // r
+  Real implicit_weight = 1;     // theta
+  Real3 acceleration{0, 0, 0};  // f / rho
   AdvectionScheme scheme = AdvectionScheme::None;
 };
 
 /// extrapolated = u + r/2 (u - u_old); returns its largest component.
 Real extrapolate_velocity(const SweepPlan& plan, const RowRanges& rows, const FaceVector<Real>& velocity,
-                          const FaceVector<Real>& previous, Real step_ratio, const FaceVector<Real>& extrapolated);
+                          const FaceVector<Real>& previous, Real step_ratio,
+                          const FaceVector<Real>& extrapolated);
 
-/// previous = u + r (u - u_old) + e: the predicted velocity takes the place of the oldest one.
-void apply_correction(const SweepPlan& plan, const RowRanges& rows, Real step_ratio, const Field<Real>& velocity,
-                      const Field<Real>& correction, const Field<Real>& previous);
+/// previous = u + r (u - u_old) + e + left_over: the predicted velocity takes the place of the oldest one.
+/// left_over is the mean of what the viscous solver left of its residual: the fluid would lose that momentum.
+void apply_correction(const SweepPlan& plan, const RowRanges& rows, Real step_ratio,
+                      const Field<Real>& velocity, const Field<Real>& correction, Real left_over,
+                      const Field<Real>& previous);
 
 /// residual = u + dt (-A(v) - grad p / rho + f / rho + nu L v) - (u + r (u - u_old)): what e must balance.
-void compute_momentum_residual(int c, const MomentumTerms& terms, const SweepPlan& plan, const RowRanges& rows,
-                               const WallRows& fixed_rows, const WallRows& moving_rows, const Field<Real>& residual);
+void compute_momentum_residual(int c, const MomentumTerms& terms, const SweepPlan& plan,
+                               const RowRanges& rows, const WallRows& fixed_rows, const WallRows& moving_rows,
+                               const Field<Real>& residual);
 
-
-/// Sum over the fluid of -A(v) of component c: fluxes between fluid points cancel, those towards walls and the
-/// wall rows' v_c div(v) do not. This error, of first order in the spacing, is momentum that neither the fluid nor
-/// a body would have; it is returned to the fluid as a uniform acceleration.
-Real advective_leak(int c, const MomentumTerms& terms, const WallRows& fixed_rows, const WallRows& moving_rows);
+/// Sum over the fluid of -A(v) of component c: fluxes between fluid points cancel, those towards walls and
+/// the wall rows' v_c div(v) do not. This error, of first order in the spacing, is momentum that neither the
+/// fluid nor a body would have; it is returned to the fluid as a uniform acceleration.
+Real advective_leak(int c, const MomentumTerms& terms, const WallRows& fixed_rows,
+                    const WallRows& moving_rows);
 
 /// No flux: Stokes flow.
 struct NoAdvection {};
@@ -52,7 +56,8 @@ struct NoAdvection {};
 /// carrying velocity of the two points beside the face, times the value that the scheme carries.
 /// own and step: steps of the linear index along the axis of q and along the axis of the face.
 template <class Scheme>
-KOKKOS_INLINE_FUNCTION Real momentum_flux_low(const Real* q, const Real* carrying, Index p, Index own, Index step) {
+KOKKOS_INLINE_FUNCTION Real momentum_flux_low(const Real* q, const Real* carrying, Index p, Index own,
+                                              Index step) {
   const Real carrier = 0.5 * (carrying[p - own] + carrying[p]);
   return carrier * carried_value<Scheme>(carrier, q[p - 2 * step], q[p - step], q[p], q[p + step]);
 }
@@ -63,7 +68,8 @@ KOKKOS_INLINE_FUNCTION Real momentum_flux_low<NoAdvection>(const Real*, const Re
 }
 
 /// Divergence of the carrying velocity in the control volume of face p.
-KOKKOS_INLINE_FUNCTION Real carrier_divergence(const FaceVector<Real>& v, int c, Index p, const Real3& inverse_spacing) {
+KOKKOS_INLINE_FUNCTION Real carrier_divergence(const FaceVector<Real>& v, int c, Index p,
+                                               const Real3& inverse_spacing) {
   const Layout& layout = v.x.layout();
   const Index own = layout.stride(c);
   Real divergence = 0;

@@ -38,8 +38,8 @@ KOKKOS_INLINE_FUNCTION bool is_cut(const FaceVector<OpenFraction>& open, Index n
 
 /// Integral of the wall velocity over the closed part of the low face of cell (i, j, k) along axis, per
 /// face area. A face whose centre is solid counts as closed.
-KOKKOS_INLINE_FUNCTION Real swept_flux(const SolidSampler& solid, const FaceVector<OpenFraction>& open, int axis, int i,
-                                       int j, int k) {
+KOKKOS_INLINE_FUNCTION Real swept_flux(const SolidSampler& solid, const FaceVector<OpenFraction>& open,
+                                       int axis, int i, int j, int k) {
   const Index p = open.x.layout()(i, j, k);
   const OpenFraction fraction = open[axis][p];
   if (fraction == fully_open) return 0;
@@ -57,8 +57,8 @@ KOKKOS_INLINE_FUNCTION Real swept_flux(const SolidSampler& solid, const FaceVect
 
 }  // namespace
 
-void build_body_faces(int c, const SolidSampler& solid, const FaceVector<OpenFraction>& open, const RegionList& regions,
-                      const Array<Index>& scratch, BodyFaces& faces) {
+void build_body_faces(int c, const SolidSampler& solid, const FaceVector<OpenFraction>& open,
+                      const RegionList& regions, const Array<Index>& scratch, BodyFaces& faces) {
   const RegionView region = regions.view();
   const FaceVector<OpenFraction> fraction = open;
   const Layout layout = open.x.layout();
@@ -119,7 +119,8 @@ void refresh_body_faces(int c, const SolidSampler& solid, const BodyFaces& faces
       });
 }
 
-void refresh_cut_cells(const SolidSampler& solid, const FaceVector<OpenFraction>& open, const CutCells& cells) {
+void refresh_cut_cells(const SolidSampler& solid, const FaceVector<OpenFraction>& open,
+                       const CutCells& cells) {
   const CutCells target = cells;
   const SolidSampler sampler = solid;
   const FaceVector<OpenFraction> fraction = open;

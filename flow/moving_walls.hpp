@@ -29,14 +29,15 @@ struct CutCells {
   void reserve(Index capacity);
 };
 
-void build_body_faces(int c, const SolidSampler& solid, const FaceVector<OpenFraction>& open, const RegionList& regions,
-                      const Array<Index>& scratch, BodyFaces& faces);
+void build_body_faces(int c, const SolidSampler& solid, const FaceVector<OpenFraction>& open,
+                      const RegionList& regions, const Array<Index>& scratch, BodyFaces& faces);
 void build_cut_cells(const FaceVector<OpenFraction>& open, const RegionList& regions,
                      const Array<Index>& scratch, CutCells& cells);
 
 /// Recompute velocities and fluxes from the present motion of the bodies.
 void refresh_body_faces(int c, const SolidSampler& solid, const BodyFaces& faces);
-void refresh_cut_cells(const SolidSampler& solid, const FaceVector<OpenFraction>& open, const CutCells& cells);
+void refresh_cut_cells(const SolidSampler& solid, const FaceVector<OpenFraction>& open,
+                       const CutCells& cells);
 
 /// velocity[face] = velocity of the body there.
 void impose_body_velocity(const BodyFaces& faces, const Field<Real>& velocity);

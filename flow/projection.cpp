@@ -25,7 +25,8 @@ struct Divergence {
       return static_cast<Real>(open[n]) * velocity[n];
     }
     KOKKOS_INLINE_FUNCTION Real operator()(int i) const {
-      const Real divergence = fx * (flux(ox, u, i + 1) - flux(ox, u, i)) + fy * (flux(oy, v, i + sy) - flux(oy, v, i)) +
+      const Real divergence = fx * (flux(ox, u, i + 1) - flux(ox, u, i)) +
+                              fy * (flux(oy, v, i + sy) - flux(oy, v, i)) +
                               fz * (flux(oz, w, i + sz) - flux(oz, w, i));
       result[i] = divergence;
       return divergence;
@@ -68,11 +69,21 @@ struct Projection {
   };
   KOKKOS_INLINE_FUNCTION Row row(int j, int k) const {
     const Index n = layout(0, j, k);
-    return {open_x + n,         open_y + n,         open_z + n,
-            potential + n,      divergence + n,     u + n,
-            v + n,              w + n,              pressure + n,
-            layout.pitch_y,     layout.pitch_z,     inverse_spacing[0],
-            inverse_spacing[1], inverse_spacing[2], density_over_time_step,
+    return {open_x + n,
+            open_y + n,
+            open_z + n,
+            potential + n,
+            divergence + n,
+            u + n,
+            v + n,
+            w + n,
+            pressure + n,
+            layout.pitch_y,
+            layout.pitch_z,
+            inverse_spacing[0],
+            inverse_spacing[1],
+            inverse_spacing[2],
+            density_over_time_step,
             implicit_viscosity};
   }
 };
@@ -82,7 +93,7 @@ struct Projection {
 Real compute_divergence(const Grid& grid, const SweepPlan& plan, const RowRanges& rows,
                         const FaceVector<OpenFraction>& open, const CutCells& cut_cells,
                         const FaceVector<Real>& velocity, const Field<Real>& divergence) {
-  Divergence body{divergence.layout(), open.x.data(),     open.y.data(),     open.z.data(),    velocity.x.data(),
+  Divergence body{divergence.layout(), open.x.data(),     open.y.data(),     open.z.data(), velocity.x.data(),
                   velocity.y.data(),   velocity.z.data(), divergence.data(), Real3{0, 0, 0}};
   for (int a = 0; a < 3; ++a) body.scale[a] = open_fraction_unit / grid.spacing[a];
   const Norms norms = sweep("flow::compute_divergence", plan, Stage{rows, body});

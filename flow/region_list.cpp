@@ -9,8 +9,8 @@ template <class T>
 void upload(const std::string& name, const std::vector<T>& values, Array<T>& device) {
   if (device.extent(0) < values.size()) device = Array<T>(name, values.size() + values.size() / 2 + 16);
   if (values.empty()) return;
-  const Kokkos::View<const T*, Kokkos::HostSpace, Kokkos::MemoryTraits<Kokkos::Unmanaged>> host(values.data(),
-                                                                                               values.size());
+  const Kokkos::View<const T*, Kokkos::HostSpace, Kokkos::MemoryTraits<Kokkos::Unmanaged>> host(
+      values.data(), values.size());
   Kokkos::deep_copy(Kokkos::subview(device, Kokkos::pair<std::size_t, std::size_t>(0, values.size())), host);
 }
 

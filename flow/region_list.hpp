@@ -11,17 +11,17 @@ namespace peclet::flow {
 /// One visited cell: indices inside the domain, and unwrapped ones that give positions near the body.
 struct RegionCell {
   int i, j, k;
-  int region;  // which box
-  bool unique; // false where an earlier box visits the same cell
+  int region;   // which box
+  bool unique;  // false where an earlier box visits the same cell
 };
 
 /// Device side of RegionList.
 struct RegionView {
-  Array<Box> boxes;            // unwrapped: low in [0, n), high may exceed n
-  Array<Index> first_cell;     // per box, plus the total
-  Array<int> body;             // per box
-  Array<int> first_neighbor;   // per box, plus the total
-  Array<int> neighbors;        // boxes that share cells with a box, itself included, ascending
+  Array<Box> boxes;           // unwrapped: low in [0, n), high may exceed n
+  Array<Index> first_cell;    // per box, plus the total
+  Array<int> body;            // per box
+  Array<int> first_neighbor;  // per box, plus the total
+  Array<int> neighbors;       // boxes that share cells with a box, itself included, ascending
   Int3 cells;
   int count = 0;
 

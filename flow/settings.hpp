@@ -6,10 +6,10 @@ namespace peclet::flow {
 
 /// Value of the transported velocity on a control-volume face.
 enum class AdvectionScheme {
-  None,           // Stokes flow
-  SecondUpwind,   // linear extrapolation from the upwind side
-  Koren,          // third-order upwind-biased, limited [Koren1993]
-  Central,        // mean of both sides
+  None,          // Stokes flow
+  SecondUpwind,  // linear extrapolation from the upwind side
+  Koren,         // third-order upwind-biased, limited [Koren1993]
+  Central,       // mean of both sides
 };
 
 struct Settings {
@@ -18,9 +18,9 @@ struct Settings {
   Real time_step = 50;
   Real3 body_force{0, 0, 0};  // per unit volume
   AdvectionScheme advection = AdvectionScheme::None;
-  Real velocity_tolerance = 1e-8;   // largest momentum residual over largest velocity
+  Real velocity_tolerance = 1e-8;  // largest momentum residual over largest velocity
   int velocity_iteration_limit = 200;
-  Real pressure_tolerance = 1e-6;   // residual over divergence before the projection, 2-norms
+  Real pressure_tolerance = 1e-6;  // residual over divergence before the projection, 2-norms
   int pressure_iteration_limit = 200;
 };
 

@@ -13,8 +13,8 @@ inline constexpr OpenFraction smallest_open_fraction = fully_open / 4;
 /// Distance to the bodies that own the two cells beside a face, callable in kernels.
 struct SolidSampler {
   BodyGeometry geometry;
-  Field<Real> sdf;    // at cell centres, exact within a band around the surfaces
-  Field<int> owner;   // nearest body of a cell within that band
+  Field<Real> sdf;      // at cell centres, exact within a band around the surfaces
+  Field<int> owner;     // nearest body of a cell within that band
   Field<Real> samples;  // the solid given as an array, if any
   Grid grid;
 
@@ -59,7 +59,8 @@ struct FaceOpening {
 
 /// Adds one triangle (a quarter of the face: the centre and two corners) to a face opening whose closed_s
 /// and closed_t accumulate first moments of the closed part.
-KOKKOS_INLINE_FUNCTION void add_triangle(const Real (&d)[3], const Real (&s)[3], const Real (&t)[3], FaceOpening& face) {
+KOKKOS_INLINE_FUNCTION void add_triangle(const Real (&d)[3], const Real (&s)[3], const Real (&t)[3],
+                                         FaceOpening& face) {
   const int closed_count = (d[0] < 0) + (d[1] < 0) + (d[2] < 0);
   constexpr Real area = 0.25;
   const Real mean_s = (s[0] + s[1] + s[2]) / 3, mean_t = (t[0] + t[1] + t[2]) / 3;
@@ -92,8 +93,8 @@ KOKKOS_INLINE_FUNCTION void add_triangle(const Real (&d)[3], const Real (&s)[3],
 
 /// Opening of the low face of cell (i, j, k) along axis, from five samples (centre and corners).
 /// s and t run along the axes (axis + 1) % 3 and (axis + 2) % 3.
-KOKKOS_INLINE_FUNCTION FaceOpening face_opening(const SolidSampler& solid, int axis, int i, int j, int k, int owner_low,
-                                                int owner_high) {
+KOKKOS_INLINE_FUNCTION FaceOpening face_opening(const SolidSampler& solid, int axis, int i, int j, int k,
+                                                int owner_low, int owner_high) {
   const int axis_s = (axis + 1) % 3, axis_t = (axis + 2) % 3;
   const Vec3 center = solid.grid.face_center(axis, i, j, k);
   constexpr Real corner_s[4] = {-0.5, 0.5, 0.5, -0.5}, corner_t[4] = {-0.5, -0.5, 0.5, 0.5};
@@ -122,7 +123,8 @@ KOKKOS_INLINE_FUNCTION FaceOpening face_opening(const SolidSampler& solid, int a
 
 /// Distance from x to the wall along the segment towards y, as a fraction of the segment: root of the
 /// signed distance by safeguarded false position; 1 where the solid begins beyond y.
-KOKKOS_INLINE_FUNCTION Real wall_crossing(const SolidSampler& solid, int owner_a, int owner_b, Vec3 x, Vec3 y) {
+KOKKOS_INLINE_FUNCTION Real wall_crossing(const SolidSampler& solid, int owner_a, int owner_b, Vec3 x,
+                                          Vec3 y) {
   Real low = 0, high = 1;
   Real d_low = solid.distance(owner_a, owner_b, x), d_high = solid.distance(owner_a, owner_b, y);
   if (d_low <= 0) return 0;
@@ -148,12 +150,12 @@ KOKKOS_INLINE_FUNCTION Real wall_crossing(const SolidSampler& solid, int owner_a
 /// A gap of less than one cell between two bodies that can move against each other.
 struct NarrowGap {
   int first = no_owner, second = no_owner;  // the nearer body and the other one
-  Real share = 0;                           // of the other one in the common motion: 0 (no gap) to 1/2 (touching)
+  Real share = 0;  // of the other one in the common motion: 0 (no gap) to 1/2 (touching)
 };
 
-/// The gap around the low face of cell (i, j, k) along axis. Bodies are staircases of closed faces; where two of
-/// them come within a cell, the stairs would mesh like gear teeth, and sliding past each other would squeeze the
-/// cells between them. Faces in the gap therefore take part in a common motion of both.
+/// The gap around the low face of cell (i, j, k) along axis. Bodies are staircases of closed faces; where two
+/// of them come within a cell, the stairs would mesh like gear teeth, and sliding past each other would
+/// squeeze the cells between them. Faces in the gap therefore take part in a common motion of both.
 KOKKOS_INLINE_FUNCTION NarrowGap narrow_gap(const SolidSampler& solid, int axis, int i, int j, int k) {
   const Layout& layout = solid.sdf.layout();
   const Index p = layout(i, j, k), q = p - layout.stride(axis);
@@ -180,8 +182,10 @@ KOKKOS_INLINE_FUNCTION NarrowGap narrow_gap(const SolidSampler& solid, int axis,
   return gap;
 }
 
-/// Velocity along axis, at x near a closed face, of the walls there: of body, or of both sides of a narrow gap.
-KOKKOS_INLINE_FUNCTION Real wall_velocity(const SolidSampler& solid, const NarrowGap& gap, int body, int axis, Vec3 x) {
+/// Velocity along axis, at x near a closed face, of the walls there: of body, or of both sides of a narrow
+/// gap.
+KOKKOS_INLINE_FUNCTION Real wall_velocity(const SolidSampler& solid, const NarrowGap& gap, int body, int axis,
+                                          Vec3 x) {
   if (gap.share == 0) return body >= 0 ? solid.geometry.velocity(body, x)[axis] : 0.0;
   const Real first = gap.first >= 0 ? solid.geometry.velocity(gap.first, x)[axis] : 0.0;
   const Real second = gap.second >= 0 ? solid.geometry.velocity(gap.second, x)[axis] : 0.0;

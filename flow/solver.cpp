@@ -5,6 +5,7 @@
 
 #include "core/error.hpp"
 #include "core/halo.hpp"
+#include "flow/diagnostics.hpp"
 #include "flow/projection.hpp"
 
 namespace peclet::flow {
@@ -33,72 +34,9 @@ constexpr Real divergence_rounding = 1e-13;
 /// Largest divergence after the projection, relative to velocity / spacing.
 constexpr Real divergence_limit = 3e-9;
 
-Real largest_component(const RowRanges& rows, const FaceVector<Real>& velocity) {
-  const FaceVector<Real> u = velocity;
-  return max_cells(
-      "flow::largest_velocity", rows, KOKKOS_LAMBDA(int i, int j, int k) {
-        const Index p = u.x.layout()(i, j, k);
-        const Real x = Kokkos::abs(u.x[p]), y = Kokkos::abs(u.y[p]), z = Kokkos::abs(u.z[p]);
-        const Real larger = x > y ? x : y;
-        return larger > z ? larger : z;
-      });
+Real smallest_spacing(const Grid& grid) {
+  return std::min({grid.spacing[0], grid.spacing[1], grid.spacing[2]});
 }
-
-/// Zero on closed faces.
-void mask_closed_faces(const RowRanges& whole, const FaceVector<OpenFraction>& open, const FaceVector<Real>& velocity) {
-  const FaceVector<OpenFraction> o = open;
-  const FaceVector<Real> u = velocity;
-  for_each_cell(
-      "flow::mask_closed_faces", whole, KOKKOS_LAMBDA(int i, int j, int k) {
-        const Index p = u.x.layout()(i, j, k);
-        for (int c = 0; c < 3; ++c) u[c][p] = o[c][p] ? u[c][p] : 0.0;
-      });
-}
-
-/// Sum of u - u_old over the open faces of one component.
-Real sum_of_change(const RowRanges& rows, const Field<OpenFraction>& open, const Field<Real>& velocity,
-                   const Field<Real>& previous) {
-  const Field<OpenFraction> o = open;
-  const Field<Real> u = velocity, old = previous;
-  return sum_cells(
-      "flow::sum_of_change", rows, KOKKOS_LAMBDA(int i, int j, int k) {
-        const Index p = u.layout()(i, j, k);
-        return o[p] ? u[p] - old[p] : 0.0;
-      });
-}
-
-Real divergence_in_open_cells(const RowRanges& rows, const FaceVector<OpenFraction>& open, const Field<Real>& divergence) {
-  const FaceVector<OpenFraction> o = open;
-  const Field<Real> div = divergence;
-  return max_cells(
-      "flow::divergence_in_open_cells", rows, KOKKOS_LAMBDA(int i, int j, int k) {
-        const Index p = div.layout()(i, j, k);
-        const Index y = p + div.layout().pitch_y, z = p + div.layout().pitch_z;
-        const int any = o.x[p] + o.x[p + 1] + o.y[p] + o.y[y] + o.z[p] + o.z[z];
-        return any ? Kokkos::abs(div[p]) : 0.0;
-      });
-}
-
-/// Volume of the solid of body b, second order: cells near the surface count by their distance to it.
-Real body_volume(const BodyGeometry& geometry, const Grid& grid, int b, const Box& region) {
-  const BodyGeometry bodies = geometry;
-  const Real h = std::cbrt(grid.cell_volume());
-  return grid.cell_volume() *
-         sum_cells(
-             "flow::body_volume", RowRanges(region), KOKKOS_LAMBDA(int i, int j, int k) {
-               const Real fraction = 0.5 - bodies.distance(b, grid.cell_center(i, j, k)) / h;
-               return fraction < 0 ? 0.0 : (fraction > 1 ? 1.0 : fraction);
-             });
-}
-
-/// Number of fluid points of one component.
-Real count_open_faces(const RowRanges& rows, const Field<OpenFraction>& open) {
-  const Field<OpenFraction> o = open;
-  return sum_cells(
-      "flow::count_open_faces", rows, KOKKOS_LAMBDA(int i, int j, int k) { return o(i, j, k) ? 1.0 : 0.0; });
-}
-
-Real smallest_spacing(const Grid& grid) { return std::min({grid.spacing[0], grid.spacing[1], grid.spacing[2]}); }
 
 }  // namespace
 
@@ -294,22 +232,24 @@ void Solver::predict_velocity(const MomentumTerms& terms, Real velocity_scale) {
       const Stopwatch watch(times_.momentum);
       compute_momentum_residual(c, terms, plan_, boundary_.rows(), fixed_rows, moving_rows, residual_);
     }
+    Real left_over = 0;
     {
       const Stopwatch watch(times_.viscous);
-      Real left_over = 0;
       const SolverReport report =
-          viscous_solver_.solve(system, periodic_, residual_, correction, settings_.velocity_tolerance, velocity_scale,
-                                settings_.velocity_iteration_limit, left_over);
-      require_state(std::isfinite(left_over),
-                    "step(): the momentum solve met a value that is not finite; the time step may be too large");
+          viscous_solver_.solve(system, periodic_, residual_, correction, settings_.velocity_tolerance,
+                                velocity_scale, settings_.velocity_iteration_limit, left_over);
+      require_state(
+          std::isfinite(left_over),
+          "step(): the momentum solve met a value that is not finite; the time step may be too large");
       velocity_report_.iterations = std::max(velocity_report_.iterations, report.iterations);
       velocity_report_.residual = std::max(velocity_report_.residual, report.residual);
       velocity_report_.converged = velocity_report_.converged && report.converged;
       fill_periodic_ghosts(correction, periodic_, 1);
       const Stopwatch load_watch(times_.loads);
-      load_collector_.add_momentum(c, terms, boundary_.solid(), fixed_rows, moving_rows, correction, left_over);
+      load_collector_.add_momentum(c, terms, boundary_.solid(), fixed_rows, moving_rows, correction);
     }
-    apply_correction(plan_, boundary_.rows(), terms.step_ratio, velocity_[c], correction, previous_[c]);
+    apply_correction(plan_, boundary_.rows(), terms.step_ratio, velocity_[c], correction,
+                     left_over == 0 ? 0 : left_over / fluid_points(c), previous_[c]);
   }
 }
 
@@ -318,8 +258,8 @@ void Solver::project_velocity(Real velocity_scale, Real implicit_weight) {
     impose_body_velocity(boundary_.body_faces(c), velocity_[c]);
     fill_periodic_ghosts(velocity_[c], periodic_, 1);
   }
-  const Real largest = compute_divergence(grid_, plan_, boundary_.rows(), boundary_.open(), boundary_.cut_cells(),
-                                          velocity_, divergence_);
+  const Real largest = compute_divergence(grid_, plan_, boundary_.rows(), boundary_.open(),
+                                          boundary_.cut_cells(), velocity_, divergence_);
   {
     const Stopwatch watch(times_.pressure);
     const Real scale = std::max(velocity_scale / smallest_spacing(grid_), largest);
@@ -330,11 +270,12 @@ void Solver::project_velocity(Real velocity_scale, Real implicit_weight) {
     if (largest * limits.relative_tolerance < divergence_rounding * scale)
       limits.relative_tolerance = largest > 0 ? std::min(0.9, divergence_rounding * scale / largest) : 0.9;
     const SolveReport report = pressure_solver_.solve(divergence_, potential_, limits);
-    require_state(std::isfinite(report.residual), "step(): the pressure solve met a value that is not finite");
+    require_state(std::isfinite(report.residual),
+                  "step(): the pressure solve met a value that is not finite");
     pressure_report_ = {report.iterations, report.residual, report.converged};
   }
-  const ProjectionUpdate update{settings_.density / settings_.time_step, implicit_weight * settings_.viscosity,
-                                potential_, divergence_};
+  const ProjectionUpdate update{settings_.density / settings_.time_step,
+                                implicit_weight * settings_.viscosity, potential_, divergence_};
   apply_projection(grid_, plan_, boundary_.rows(), boundary_.open(), update, velocity_, pressure_);
   fill_periodic_ghosts(pressure_, periodic_, 1);
   fill_periodic_ghosts(divergence_, periodic_, 1);
@@ -348,8 +289,8 @@ void Solver::project_velocity(Real velocity_scale, Real implicit_weight) {
       spin_resistance[static_cast<std::size_t>(b)] = 2 * settings_.viscosity * volume * spin;
     }
     for (int c = 0; c < 3; ++c)
-      load_collector_.add_pressure(c, boundary_.solid(), boundary_.fixed_rows(c), boundary_.moving_rows(c), pressure_,
-                                   divergence_, update.implicit_viscosity);
+      load_collector_.add_pressure(c, boundary_.solid(), boundary_.fixed_rows(c), boundary_.moving_rows(c),
+                                   pressure_, divergence_, update.implicit_viscosity);
     loads_ = load_collector_.finish(spin_resistance);
   }
 }
@@ -362,7 +303,8 @@ const std::vector<BodyLoad>& Solver::loads() const {
 Real Solver::largest_open_divergence() {
   if (geometry_stale_) update_geometry();
   for (int c = 0; c < 3; ++c) fill_periodic_ghosts(velocity_[c], periodic_, 1);
-  compute_divergence(grid_, plan_, boundary_.rows(), boundary_.open(), boundary_.cut_cells(), velocity_, divergence_);
+  compute_divergence(grid_, plan_, boundary_.rows(), boundary_.open(), boundary_.cut_cells(), velocity_,
+                     divergence_);
   return divergence_in_open_cells(boundary_.rows(), boundary_.open(), divergence_);
 }
 
@@ -383,11 +325,14 @@ void Solver::sample_distance(const Field<Real>& distance, const Field<int>& owne
   sample_all_bodies(grid_, bodies_.geometry(), bodies_.count(), samples_, distance, owner);
 }
 
-Index Solver::image_overlap_cells() { return count_image_overlap(grid_, bodies_.geometry(), bodies_.count()); }
+Index Solver::image_overlap_cells() {
+  return count_image_overlap(grid_, bodies_.geometry(), bodies_.count());
+}
 
 std::size_t Solver::bytes() const {
   const std::size_t cells = velocity_.x.array().extent(0);
-  return cells * (9 + 4) * sizeof(Real) + viscous_solver_.bytes() + pressure_solver_.bytes() + boundary_.bytes();
+  return cells * (9 + 4) * sizeof(Real) + viscous_solver_.bytes() + pressure_solver_.bytes() +
+         boundary_.bytes();
 }
 
 }  // namespace peclet::flow

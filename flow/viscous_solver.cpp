@@ -70,7 +70,8 @@ struct Sweep {
     Index sy, sz;
     float x, y, z, keep, scale;
     KOKKOS_INLINE_FUNCTION void operator()(int i) const {
-      const float neighbors = x * (e[i - 1] + e[i + 1]) + y * (e[i - sy] + e[i + sy]) + z * (e[i - sz] + e[i + sz]);
+      const float neighbors =
+          x * (e[i - 1] + e[i + 1]) + y * (e[i - sy] + e[i + sy]) + z * (e[i - sz] + e[i + sz]);
       next[i] = keep * e[i] + scale * (static_cast<float>(residual[i]) + neighbors);
     }
   };
@@ -106,7 +107,8 @@ struct Accumulate {
   };
   KOKKOS_INLINE_FUNCTION Row row(int j, int k) const {
     const Index n = layout(0, j, k);
-    return {e + n, residual + n, correction + n, layout.pitch_y, layout.pitch_z, d.x, d.y, d.z, d.diagonal, is_first};
+    return {e + n, residual + n, correction + n, layout.pitch_y, layout.pitch_z, d.x,
+            d.y,   d.z,          d.diagonal,     is_first};
   }
 };
 
@@ -139,7 +141,8 @@ template <class T>
 struct WallRow {
   T neighbors = 0, diagonal = 1;
 
-  KOKKOS_INLINE_FUNCTION WallRow(const WallRows& rows, Index row, const Field<float>& e, const Diffusion<T>& diffusion) {
+  KOKKOS_INLINE_FUNCTION WallRow(const WallRows& rows, Index row, const Field<float>& e,
+                                 const Diffusion<T>& diffusion) {
     const Index p = rows.face(row);
     for (int d = 0; d < WallRows::directions; ++d) {
       const T coefficient = diffusion.along(d / 2) * static_cast<T>(rows.weight(row, d));
@@ -151,8 +154,8 @@ struct WallRow {
 };
 
 /// First sweep from e = 0 at walls.
-void start_wall_rows(const ViscousSystem& system, const WallRows& rows, const Field<Real>& residual, float weight,
-                     const Field<float>& e) {
+void start_wall_rows(const ViscousSystem& system, const WallRows& rows, const Field<Real>& residual,
+                     float weight, const Field<float>& e) {
   const Diffusion<float> diffusion(system);
   const WallRows w = rows;
   for_each(
@@ -165,8 +168,8 @@ void start_wall_rows(const ViscousSystem& system, const WallRows& rows, const Fi
       });
 }
 
-void sweep_wall_rows(const ViscousSystem& system, const WallRows& rows, const Field<Real>& residual, float weight,
-                     const Field<float>& e, const Field<float>& next) {
+void sweep_wall_rows(const ViscousSystem& system, const WallRows& rows, const Field<Real>& residual,
+                     float weight, const Field<float>& e, const Field<float>& next) {
   const Diffusion<float> diffusion(system);
   const WallRows w = rows;
   for_each(
@@ -218,11 +221,13 @@ ViscousSolver::ViscousSolver(const Layout& layout)
 
 std::size_t ViscousSolver::bytes() const { return 2 * sizeof(float) * iterate_.array().extent(0); }
 
-SolverReport ViscousSolver::solve(const ViscousSystem& system, const Periodicity& periodic, const Field<Real>& residual,
-                                  const Field<Real>& correction, Real relative_tolerance, Real velocity_scale,
-                                  int iteration_limit, Real& residual_sum) {
+SolverReport ViscousSolver::solve(const ViscousSystem& system, const Periodicity& periodic,
+                                  const Field<Real>& residual, const Field<Real>& correction,
+                                  Real relative_tolerance, Real velocity_scale, int iteration_limit,
+                                  Real& residual_sum) {
   Real spread = 0;  // b: sum of the off-diagonal part
-  for (int a = 0; a < 3; ++a) spread += 2 * system.diffusion / (system.grid.spacing[a] * system.grid.spacing[a]);
+  for (int a = 0; a < 3; ++a)
+    spread += 2 * system.diffusion / (system.grid.spacing[a] * system.grid.spacing[a]);
   const Real s = spread / (1 + spread);
 
   SolverReport report;
@@ -230,7 +235,8 @@ SolverReport ViscousSolver::solve(const ViscousSystem& system, const Periodicity
   const Real scale = std::max(velocity_scale, norms.largest);
   const Real tolerance = relative_tolerance * scale;
   bool is_first = true;
-  while (is_first || (norms.largest > tolerance && report.iterations < iteration_limit && std::isfinite(norms.sum))) {
+  while (is_first ||
+         (norms.largest > tolerance && report.iterations < iteration_limit && std::isfinite(norms.sum))) {
     const Real wanted = norms.largest > 0 ? 0.5 * tolerance / norms.largest : 0.5;
     const int sweeps = std::min({chebyshev_sweeps(s, std::clamp(wanted, cycle_reduction_limit, 0.5)),
                                  sweeps_per_cycle_limit, iteration_limit - report.iterations});
@@ -250,8 +256,8 @@ SolverReport ViscousSolver::solve(const ViscousSystem& system, const Periodicity
   return report;
 }
 
-void ViscousSolver::run_sweeps(const ViscousSystem& system, const Periodicity& periodic, const Field<Real>& residual,
-                               int sweeps, Real s) {
+void ViscousSolver::run_sweeps(const ViscousSystem& system, const Periodicity& periodic,
+                               const Field<Real>& residual, int sweeps, Real s) {
   const Layout& layout = residual.layout();
   const Diffusion<float> diffusion(system);
   const float first = chebyshev_weight(0, sweeps, s);
@@ -262,8 +268,13 @@ void ViscousSolver::run_sweeps(const ViscousSystem& system, const Periodicity& p
   for (int m = 1; m < sweeps; ++m) {
     const float weight = chebyshev_weight(m, sweeps, s);
     fill_periodic_ghosts(iterate_, periodic, 1);
-    const Sweep body{layout,        residual.data(), iterate_.data(), next_.data(), diffusion,
-                     1.0F - weight, weight / diffusion.diagonal};
+    const Sweep body{layout,
+                     residual.data(),
+                     iterate_.data(),
+                     next_.data(),
+                     diffusion,
+                     1.0F - weight,
+                     weight / diffusion.diagonal};
     sweep("flow::viscous_sweep", *system.plan, Stage{system.rows, body});
     sweep_wall_rows(system, system.fixed_rows, residual, weight, iterate_, next_);
     sweep_wall_rows(system, system.moving_rows, residual, weight, iterate_, next_);

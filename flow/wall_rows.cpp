@@ -54,8 +54,8 @@ KOKKOS_INLINE_FUNCTION void fill_row(const WallRows& rows, Index row, int c, con
 
 }  // namespace
 
-void build_wall_rows(int c, const SolidSampler& solid, const FaceVector<OpenFraction>& open, const RegionList& regions,
-                     const Array<Index>& scratch, WallRows& rows) {
+void build_wall_rows(int c, const SolidSampler& solid, const FaceVector<OpenFraction>& open,
+                     const RegionList& regions, const Array<Index>& scratch, WallRows& rows) {
   const RegionView region = regions.view();
   const FaceVector<OpenFraction> fraction = open;
   const Layout layout = open.x.layout();

@@ -10,8 +10,8 @@ namespace peclet::flow {
 /// Smallest distance to a wall, in spacings, that enters a stencil: bounds the coefficients.
 inline constexpr Real smallest_wall_distance = 1e-2;
 
-/// Between two walls closer than this, in spacings, a stencil keeps this width: the forces that the two exchange
-/// through it stay those of the fluid in the gap.
+/// Between two walls closer than this, in spacings, a stencil keeps this width: the forces that the two
+/// exchange through it stay those of the fluid in the gap.
 inline constexpr Real narrowest_stencil = 1;
 
 /// Rows of one velocity component. Direction d = 2 a + s is the low (s = 0) or high (s = 1) neighbour along
@@ -22,12 +22,12 @@ struct WallRows {
   static constexpr int directions = 6;
 
   Index count = 0;
-  Array<Index> face;                                   // linear index of the velocity point
+  Array<Index> face;                                      // linear index of the velocity point
   Kokkos::View<float* [directions], MemorySpace> weight;  // 2 / (l (l + h)), not divided by spacing^2
-  Kokkos::View<int* [directions], MemorySpace> owner;  // body of each wall; of the nearest body elsewhere
-  Array<std::uint8_t> walls;                           // bit d: there is a wall in direction d
-  Array<Real> wall_sum;                                // sum over walls of weight * wall velocity / spacing^2
-  Array<std::uint8_t> superseded;                      // rows of fixed bodies inside a moving region
+  Kokkos::View<int* [directions], MemorySpace> owner;     // body of each wall; of the nearest body elsewhere
+  Array<std::uint8_t> walls;                              // bit d: there is a wall in direction d
+  Array<Real> wall_sum;            // sum over walls of weight * wall velocity / spacing^2
+  Array<std::uint8_t> superseded;  // rows of fixed bodies inside a moving region
 
   KOKKOS_INLINE_FUNCTION bool is_wall(Index row, int d) const { return (walls(row) >> d) & 1; }
 
@@ -40,7 +40,8 @@ struct WallRows {
 
   void reserve(Index capacity);
   Index bytes() const {
-    constexpr std::size_t per_row = sizeof(Index) + directions * (sizeof(float) + sizeof(int)) + sizeof(Real) + 2;
+    constexpr std::size_t per_row =
+        sizeof(Index) + directions * (sizeof(float) + sizeof(int)) + sizeof(Real) + 2;
     return static_cast<Index>(face.extent(0) * per_row);
   }
 };
@@ -72,8 +73,8 @@ KOKKOS_INLINE_FUNCTION bool touches_wall(const FaceVector<OpenFraction>& open, i
 }
 
 /// Lists the rows of component c among the cells of the regions (or of the whole grid when regions is null).
-void build_wall_rows(int c, const SolidSampler& solid, const FaceVector<OpenFraction>& open, const RegionList& regions,
-                     const Array<Index>& scratch, WallRows& rows);
+void build_wall_rows(int c, const SolidSampler& solid, const FaceVector<OpenFraction>& open,
+                     const RegionList& regions, const Array<Index>& scratch, WallRows& rows);
 
 /// Recomputes wall_sum from the present velocities of the bodies.
 void refresh_wall_velocity(int c, const SolidSampler& solid, const WallRows& rows);

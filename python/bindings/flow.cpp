@@ -4,9 +4,9 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 
+#include "flow/solver.hpp"
 #include "python/bindings/arrays.hpp"
 #include "python/bindings/runtime.hpp"
-#include "flow/solver.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -17,7 +17,8 @@ using peclet::python::to_numpy;
 namespace peclet::flow {
 namespace {
 
-Grid make_grid(const std::array<int, 3>& cells, const std::array<double, 3>& spacing, const std::array<double, 3>& origin) {
+Grid make_grid(const std::array<int, 3>& cells, const std::array<double, 3>& spacing,
+               const std::array<double, 3>& origin) {
   Grid grid;
   for (int a = 0; a < 3; ++a) {
     const auto n = static_cast<std::size_t>(a);
@@ -33,8 +34,9 @@ Grid make_grid(const std::array<int, 3>& cells, const std::array<double, 3>& spa
 
 int checked_body(const Solver& solver, int body) {
   if (body < 0 || body >= solver.number_of_bodies())
-    throw std::out_of_range("instance: expected an index from 0 to " + std::to_string(solver.number_of_bodies() - 1) +
-                            ", found " + std::to_string(body));
+    throw std::out_of_range("instance: expected an index from 0 to " +
+                            std::to_string(solver.number_of_bodies() - 1) + ", found " +
+                            std::to_string(body));
   return body;
 }
 
@@ -166,7 +168,9 @@ void define_settings(nb::class_<Solver>& solver) {
           })
       .def_prop_rw(
           "advection_scheme", [](const Solver& s) { return s.settings().advection; },
-          [](Solver& s, AdvectionScheme scheme) { change(s, [&](Settings& settings) { settings.advection = scheme; }); })
+          [](Solver& s, AdvectionScheme scheme) {
+            change(s, [&](Settings& settings) { settings.advection = scheme; });
+          })
       .def_prop_rw(
           "velocity_tolerance", [](const Solver& s) { return s.settings().velocity_tolerance; },
           [](Solver& s, double value) {
@@ -206,7 +210,8 @@ void define_geometry(nb::class_<Solver>& solver) {
           [](Solver& s, int body, nb::handle translation, nb::handle rotation) {
             const Vec3 t = python::to_vec3(translation, "translation");
             const Quaternion q = python::to_quaternion(rotation, "quat");
-            require(q.x != 0 || q.y != 0 || q.z != 0 || q.w != 0, "quat", "a non-zero quaternion", "all zeros");
+            require(q.x != 0 || q.y != 0 || q.z != 0 || q.w != 0, "quat", "a non-zero quaternion",
+                    "all zeros");
             s.set_pose(checked_body(s, body), t, q);
           },
           "instance"_a, "translation"_a, "quat"_a)
@@ -249,7 +254,8 @@ void define_results(nb::class_<Solver>& solver) {
             const Int3 n = s.grid().cells;
             for (int c = 0; c < 3; ++c)  // check all before changing any
               if (!arrays[c].is_none())
-                Input<double>(arrays[c], names[c], {n[0], n[1], n[2]}, python::Order::Fortran).require_finite();
+                Input<double>(arrays[c], names[c], {n[0], n[1], n[2]}, python::Order::Fortran)
+                    .require_finite();
             for (int c = 0; c < 3; ++c)
               if (!arrays[c].is_none()) python::assign(s.velocity()[c], arrays[c], names[c]);
             s.velocity_changed();

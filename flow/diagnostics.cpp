@@ -1,0 +1,70 @@
+#include "flow/diagnostics.hpp"
+
+#include <cmath>
+
+namespace peclet::flow {
+
+Real largest_component(const RowRanges& rows, const FaceVector<Real>& velocity) {
+  const FaceVector<Real> u = velocity;
+  return max_cells(
+      "flow::largest_velocity", rows, KOKKOS_LAMBDA(int i, int j, int k) {
+        const Index p = u.x.layout()(i, j, k);
+        const Real x = Kokkos::abs(u.x[p]), y = Kokkos::abs(u.y[p]), z = Kokkos::abs(u.z[p]);
+        const Real larger = x > y ? x : y;
+        return larger > z ? larger : z;
+      });
+}
+
+void mask_closed_faces(const RowRanges& whole, const FaceVector<OpenFraction>& open,
+                       const FaceVector<Real>& velocity) {
+  const FaceVector<OpenFraction> o = open;
+  const FaceVector<Real> u = velocity;
+  for_each_cell(
+      "flow::mask_closed_faces", whole, KOKKOS_LAMBDA(int i, int j, int k) {
+        const Index p = u.x.layout()(i, j, k);
+        for (int c = 0; c < 3; ++c) u[c][p] = o[c][p] ? u[c][p] : 0.0;
+      });
+}
+
+Real sum_of_change(const RowRanges& rows, const Field<OpenFraction>& open, const Field<Real>& velocity,
+                   const Field<Real>& previous) {
+  const Field<OpenFraction> o = open;
+  const Field<Real> u = velocity, old = previous;
+  return sum_cells(
+      "flow::sum_of_change", rows, KOKKOS_LAMBDA(int i, int j, int k) {
+        const Index p = u.layout()(i, j, k);
+        return o[p] ? u[p] - old[p] : 0.0;
+      });
+}
+
+Real divergence_in_open_cells(const RowRanges& rows, const FaceVector<OpenFraction>& open,
+                              const Field<Real>& divergence) {
+  const FaceVector<OpenFraction> o = open;
+  const Field<Real> div = divergence;
+  return max_cells(
+      "flow::divergence_in_open_cells", rows, KOKKOS_LAMBDA(int i, int j, int k) {
+        const Index p = div.layout()(i, j, k);
+        const Index y = p + div.layout().pitch_y, z = p + div.layout().pitch_z;
+        const int any = o.x[p] + o.x[p + 1] + o.y[p] + o.y[y] + o.z[p] + o.z[z];
+        return any ? Kokkos::abs(div[p]) : 0.0;
+      });
+}
+
+Real body_volume(const BodyGeometry& geometry, const Grid& grid, int b, const Box& region) {
+  const BodyGeometry bodies = geometry;
+  const Real h = std::cbrt(grid.cell_volume());
+  return grid.cell_volume() * sum_cells(
+                                  "flow::body_volume", RowRanges(region), KOKKOS_LAMBDA(int i, int j, int k) {
+                                    const Real fraction =
+                                        0.5 - bodies.distance(b, grid.cell_center(i, j, k)) / h;
+                                    return fraction < 0 ? 0.0 : (fraction > 1 ? 1.0 : fraction);
+                                  });
+}
+
+Real count_open_faces(const RowRanges& rows, const Field<OpenFraction>& open) {
+  const Field<OpenFraction> o = open;
+  return sum_cells(
+      "flow::count_open_faces", rows, KOKKOS_LAMBDA(int i, int j, int k) { return o(i, j, k) ? 1.0 : 0.0; });
+}
+
+}  // namespace peclet::flow

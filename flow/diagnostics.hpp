@@ -1,0 +1,30 @@
+#pragma once
+// Sums and maxima over the fluid.
+#include "core/field.hpp"
+#include "core/loop.hpp"
+#include "flow/bodies.hpp"
+#include "flow/open_fraction.hpp"
+
+namespace peclet::flow {
+
+Real largest_component(const RowRanges& rows, const FaceVector<Real>& velocity);
+
+/// velocity = 0 on closed faces.
+void mask_closed_faces(const RowRanges& whole, const FaceVector<OpenFraction>& open,
+                       const FaceVector<Real>& velocity);
+
+/// Sum of u - u_old over the open faces of one component.
+Real sum_of_change(const RowRanges& rows, const Field<OpenFraction>& open, const Field<Real>& velocity,
+                   const Field<Real>& previous);
+
+/// Largest magnitude in cells that have an open face.
+Real divergence_in_open_cells(const RowRanges& rows, const FaceVector<OpenFraction>& open,
+                              const Field<Real>& divergence);
+
+/// Volume of the solid of body b, second order: cells near the surface count by their distance to it.
+Real body_volume(const BodyGeometry& geometry, const Grid& grid, int b, const Box& region);
+
+/// Number of fluid points of one component.
+Real count_open_faces(const RowRanges& rows, const Field<OpenFraction>& open);
+
+}  // namespace peclet::flow
