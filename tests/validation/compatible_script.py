@@ -3,7 +3,7 @@
 Packed arrays for the instances, integers for the advection scheme, dem.step(dt), a virtual mass by hand.
 Cell units; the tank is a solid in a periodic box because the reference gives no forces beside domain walls.
 
-python tests/validation/compatible_script.py [steps]
+python tests/validation/compatible_script.py [steps] [cells per diameter: 6, 8 or 12]
 """
 
 import sys
@@ -16,12 +16,13 @@ KI_I, KI_R = 2, 17  # columns of the instance records
 OFF = 0.3  # keeps surfaces off the points of the lattice
 
 # d/h = 6: tank of 36 x 144 x 36 cells, spheres of radius 3.
-NX, NY, NZ = 48, 160, 48
-TANK = (36, 144, 36)
-R = 3.0
+D = int(sys.argv[2]) if __name__ == "__main__" and len(sys.argv) > 2 else 6
+NX, NY, NZ = {6: (48, 160, 48), 8: (64, 208, 64), 12: (88, 304, 88)}[D]
+TANK = (6 * D, 24 * D, 6 * D)
+R = D / 2
 DT = 3.75
-NU = 2.26714e-3  # 0.01 cm2/s
-G = 1.08073e-3  # 981 cm/s2
+NU = 2.26714e-3 * D / 6  # 0.01 cm2/s
+G = 1.08073e-3 * 6 / D  # 981 cm/s2
 RHO_S = 1.14
 SUBSTEPS = 10
 
@@ -36,7 +37,7 @@ FLOOR = CY - TANK[1] / 2
 
 def start_positions():
     """Leader below, follower above and a little to the side."""
-    h = 1.0 / 36.0  # cm per cell
+    h = 1.0 / (6 * D)  # cm per cell
     return np.array(
         [[CX, FLOOR + 3.16 / h, CZ], [CX + 0.005 * 2 * R, FLOOR + 3.5 / h, CZ]],
         dtype=np.float32,
