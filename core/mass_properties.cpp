@@ -186,9 +186,6 @@ MassProperties mass_properties(const Scene& scene, int root, const MassSettings&
   quadrature.segments = settings.segments;
   quadrature.reach = reach_of(scene, root);
   quadrature.reference_point = middle;
-  constexpr int finest_cells_per_axis = 512;
-  const auto halvings = static_cast<int>(std::ceil(std::log2(Real(finest_cells_per_axis) / settings.cells)));
-  quadrature.depth = std::clamp(halvings, 1, SolidQuadrature::maximum_depth);
   const Moments moments = integrate_cells(SolidQuadrature(SceneProgram(scene, {root}), quadrature),
                                           low - middle, high - middle, settings.cells);
   require(moments.volume > 0, "root", "a body with some volume", moments.volume);

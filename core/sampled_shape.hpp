@@ -22,17 +22,17 @@ class SampledShape {
 
   KOKKOS_FUNCTION sdf::Dual distance_and_gradient(Vec3 x) const {
     int low[3];
-    Vec3 t, nearest;  // t: place between the samples low and low + 1
+    Vec3 t, beyond;  // t: place between the samples low and low + 1
     for (int axis = 0; axis < 3; ++axis) {
       const Real h = lattice_.spacing[axis];
       const int last = lattice_.points[axis] - 1;
-      const Real s = Kokkos::fmin(Kokkos::fmax((x[axis] - lattice_.origin[axis]) / h, Real(0)), Real(last));
+      const Real place = (x[axis] - lattice_.origin[axis]) / h;
+      const Real s = Kokkos::fmin(Kokkos::fmax(place, Real(0)), Real(last));
       low[axis] = Kokkos::min(static_cast<int>(s), last - 1);
       t[axis] = s - low[axis];
-      nearest[axis] = lattice_.origin[axis] + s * h;
+      beyond[axis] = (place - s) * h;
     }
     sdf::Dual d = interpolate(low, t);
-    const Vec3 beyond = x - nearest;
     const Real outside = norm(beyond);
     if (!(outside > 0)) return d;
     for (int axis = 0; axis < 3; ++axis)

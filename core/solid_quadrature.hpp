@@ -33,7 +33,7 @@ struct GaussRule {
 class SolidQuadrature {
  public:
   static constexpr int maximum_segments = 32;
-  static constexpr int maximum_depth = 9;
+  static constexpr int maximum_depth = 3;  // how often a cell may be halved
 
   struct Settings {
     GaussRule rule, check;  // cells are halved until both agree
@@ -51,7 +51,7 @@ class SolidQuadrature {
 
  private:
   static constexpr int maximum_crossings = 8;
-  static constexpr Real settled = 1e-7;  // difference between the two rules, relative to the cell
+  static constexpr Real settled = 1e-5;  // difference between the two rules, relative to the cell
 
   struct Cell {
     Vec3 low, high;
@@ -129,17 +129,21 @@ KOKKOS_INLINE_FUNCTION Real SolidQuadrature::crossing_between(Vec3 x, int axis, 
   return 0.5 * (a + b);
 }
 
-/// Insert the crossings between a and b in order; true if a is solid. The search skips what the distance
-/// rules out.
+/// Insert the crossings between a and b in order; true if a is solid. Steps over which the values allow a
+/// hidden pair of crossings are halved, down to a limit.
 KOKKOS_INLINE_FUNCTION bool SolidQuadrature::find_crossings(Vec3 x, int axis, Real a, Real b,
                                                             Crossings& found) const {
-  const Real segment = (b - a) / settings_.segments;
+  const Real segment = (b - a) / settings_.segments, smallest_step = segment / 16;
   Real s = a, f = distance(x, axis, a);
   const bool starts_solid = f < 0;
   for (int crossings = 0; s < b && crossings < maximum_crossings;) {
-    const Real safe_step = Kokkos::fabs(f) / settings_.reach;
-    const Real next = Kokkos::fmin(b, s + Kokkos::fmax(segment, safe_step));
-    const Real f_next = distance(x, axis, next);
+    Real next = Kokkos::fmin(b, s + Kokkos::fmax(segment, Kokkos::fabs(f) / settings_.reach));
+    Real f_next = distance(x, axis, next);
+    while ((f < 0) == (f_next < 0) && next - s > smallest_step &&
+           Kokkos::fabs(f) + Kokkos::fabs(f_next) < settings_.reach * (next - s)) {
+      next = 0.5 * (s + next);
+      f_next = distance(x, axis, next);
+    }
     if ((f < 0) != (f_next < 0)) {
       found.insert(crossing_between(x, axis, s, f, next, f_next));
       ++crossings;
@@ -171,7 +175,8 @@ KOKKOS_INLINE_FUNCTION void SolidQuadrature::add_plane(const Cell& cell, Vec3 x,
   const int across = axes[1], along = axes[2];
   const Real a = cell.low[along], b = cell.high[along];
   Crossings pieces;
-  for (Real face : {a, b}) {
+  const Real faces[2] = {a, b};
+  for (const Real face : faces) {
     x[along] = face;
     find_crossings(x, across, cell.low[across], cell.high[across], pieces);
   }
@@ -228,12 +233,11 @@ KOKKOS_INLINE_FUNCTION Moments SolidQuadrature::integrate(const Cell& cell, cons
   const int first = axes[0];
   Vec3 x;
   Crossings pieces;
-  for (Real second : {cell.low[axes[1]], cell.high[axes[1]]})
-    for (Real third : {cell.low[axes[2]], cell.high[axes[2]]}) {
-      x[axes[1]] = second;
-      x[axes[2]] = third;
-      find_crossings(x, first, cell.low[first], cell.high[first], pieces);
-    }
+  for (int edge = 0; edge < 4; ++edge) {
+    x[axes[1]] = (edge & 1 ? cell.high : cell.low)[axes[1]];
+    x[axes[2]] = (edge & 2 ? cell.high : cell.low)[axes[2]];
+    find_crossings(x, first, cell.low[first], cell.high[first], pieces);
+  }
   pieces.insert(cell.high[first]);
   Real start = cell.low[first];
   for (int n = 0; n < pieces.count; ++n) {
@@ -255,7 +259,7 @@ KOKKOS_INLINE_FUNCTION void SolidQuadrature::add_cell(Vec3 low, Vec3 high, Momen
     const Cell cell = pending[--count];
     if (is_uncut(cell, sum)) continue;
     const Moments moments = integrate(cell, settings_.rule);
-    const bool is_last = cell.depth == settings_.depth;
+    const bool is_last = cell.depth == maximum_depth;
     if (is_last ||
         Kokkos::fabs(moments.volume - integrate(cell, settings_.check).volume) <= settled * cell.volume()) {
       sum += moments;

@@ -1,6 +1,5 @@
 """Contract of peclet.core.geom: conventions, shapes and types of results."""
 
-import itertools
 import math
 import subprocess
 import sys
@@ -36,7 +35,7 @@ def points():
     return np.random.default_rng(1).uniform(-3, 3, (200, 3))
 
 
-@pytest.mark.parametrize("order", itertools.permutations(["peclet.geom", "peclet.core.geom"]))
+@pytest.mark.parametrize("order", [("peclet.geom", "peclet.core.geom"), ("peclet.core.geom", "peclet.geom")])
 def test_both_names_are_one_module_in_either_order(order):
     code = (
         f"import {order[0]}\nimport {order[1]}\n"
@@ -271,7 +270,7 @@ def test_mass_properties_of_a_sphere(scene):
 
 def test_principal_moments_ascend_along_their_axes(scene):
     root = scene.add_leaf("ellipsoid", [1.0, 3.0, 2.0], [1, 2, 3], TILT)
-    body = scene.body_properties(root, [-4] * 3, [8] * 3, n=16)
+    body = scene.body_properties(root, [-4] * 3, [8] * 3, n=8)
     mass = 4 / 3 * math.pi * 6
     assert body["principal"] == pytest.approx(mass / 5 * np.array([5.0, 10.0, 13.0]), rel=1e-9)
     axes = body["rotation"]
@@ -281,7 +280,7 @@ def test_principal_moments_ascend_along_their_axes(scene):
 
 def test_principal_frame_centres_and_aligns(scene):
     root = scene.add_leaf("ellipsoid", [1.0, 3.0, 2.0], [1, 2, 3], TILT)
-    framed = scene.principal_frame(root, [-4] * 3, [8] * 3, n=16)
+    framed = scene.principal_frame(root, [-4] * 3, [8] * 3, n=8)
     assert framed == root + 1
     # smallest moment along x: the longest semi-axis lies there
     tips = np.diag([3.0, 2.0, 1.0])

@@ -1,0 +1,116 @@
+#include "core/sweep.hpp"
+
+#include <gtest/gtest.h>
+
+#include "core/field.hpp"
+
+namespace peclet {
+namespace {
+
+/// out = in of the cell + in of the two planes or rows beside it, wrapped.
+struct AddNeighbours {
+  using Result = Total;
+  static constexpr bool may_overrun = false;
+  Layout layout;
+  Int3 n;
+  const Real* in;
+  Real* out;
+
+  struct Row {
+    const Real *centre, *south, *north, *below, *above;
+    Real* out;
+    KOKKOS_INLINE_FUNCTION Real operator()(int i) const {
+      out[i] = centre[i] + 2 * south[i] + 3 * north[i] + 5 * below[i] + 7 * above[i];
+      return out[i];
+    }
+  };
+  KOKKOS_INLINE_FUNCTION Row row(int j, int k) const {
+    const int js = j > 0 ? j - 1 : n[1] - 1, jn = j < n[1] - 1 ? j + 1 : 0;
+    const int kb = k > 0 ? k - 1 : n[2] - 1, ka = k < n[2] - 1 ? k + 1 : 0;
+    return {in + layout(0, j, k),  in + layout(0, js, k), in + layout(0, jn, k),
+            in + layout(0, j, kb), in + layout(0, j, ka), out + layout(0, j, k)};
+  }
+};
+
+/// Integers, so that sums are exact in any order.
+Field<Real> integers(const Int3& n) {
+  const Field<Real> field("integers", Layout(n));
+  for (int k = 0; k < n[2]; ++k)
+    for (int j = 0; j < n[1]; ++j)
+      for (int i = 0; i < n[0]; ++i) field(i, j, k) = (i * 7 + j * 13 + k * 29) % 11;
+  return field;
+}
+
+Real plain(const Int3& n, const Field<Real>& in, const Field<Real>& out) {
+  Real sum = 0;
+  const AddNeighbours body{in.layout(), n, in.array().data(), out.array().data()};
+  for (int k = 0; k < n[2]; ++k)
+    for (int j = 0; j < n[1]; ++j)
+      for (int i = 0; i < n[0]; ++i) sum += body.row(j, k)(i);
+  return sum;
+}
+
+TEST(Sweep, StagesSeeWhatTheStageBeforeWrote) {
+  for (const Int3& n : {Int3{5, 4, 1}, Int3{6, 1, 5}, Int3{7, 3, 4}, Int3{40, 30, 29}, Int3{33, 41, 2},
+                        Int3{20, 24, 64}, Int3{17, 25, 63}}) {
+    const Layout layout(n);
+    const Field<Real> in = integers(n), a("a", layout), b("b", layout), c("c", layout), d("d", layout);
+    const bool wraps[3] = {true, true, true};
+    const SweepPlan plan(n, Box{{0, 0, 0}, n}, wraps);
+    const RowRanges rows(n);
+    // The third stage overwrites what the second one read.
+    const Total total =
+        sweep("test", plan, Stage{rows, AddNeighbours{layout, n, in.array().data(), a.array().data()}},
+              Stage{rows, AddNeighbours{layout, n, a.array().data(), b.array().data()}},
+              Stage{rows, AddNeighbours{layout, n, b.array().data(), a.array().data()}});
+    plain(n, in, c);
+    plain(n, c, d);
+    const Real expected = plain(n, d, c);
+    EXPECT_EQ(total.sum, expected);
+    for (int k = 0; k < n[2]; ++k)
+      for (int j = 0; j < n[1]; ++j)
+        for (int i = 0; i < n[0]; ++i) ASSERT_EQ(a(i, j, k), c(i, j, k));
+  }
+}
+
+struct Value {
+  using Result = Norms;
+  static constexpr bool may_overrun = true;
+  Layout layout;
+  const Real* in;
+  struct Row {
+    const Real* in;
+    KOKKOS_INLINE_FUNCTION Real operator()(int i) const { return in[i]; }
+  };
+  KOKKOS_INLINE_FUNCTION Row row(int j, int k) const { return {in + layout(0, j, k)}; }
+};
+
+TEST(Sweep, PaddingDoesNotEnterNorms) {
+  const Int3 n{21, 5, 6};
+  const Field<Real> field("field", Layout(n));
+  field.fill(1e30);
+  RowRanges rows(n);
+  rows.first = Array<int>("first", 30);
+  rows.last = Array<int>("last", 30);
+  for (int row = 0; row < 30; ++row) {
+    rows.first(row) = row % 3;
+    rows.last(row) = row == 4 ? 0 : 21 - row % 5;
+  }
+  Real sum = 0, squares = 0;
+  for (int k = 0; k < 6; ++k)
+    for (int j = 0; j < 5; ++j)
+      for (int i = rows.first(j + 5 * k); i < rows.last(j + 5 * k); ++i) {
+        field(i, j, k) = i - 9;
+        sum += i - 9;
+        squares += (i - 9) * (i - 9);
+      }
+  const bool wraps[3] = {false, false, false};
+  const Norms norms =
+      sweep("test", SweepPlan(n, rows.box, wraps), Stage{rows, Value{field.layout(), field.array().data()}});
+  EXPECT_EQ(norms.sum, sum);
+  EXPECT_EQ(norms.squares, squares);
+  EXPECT_EQ(norms.largest, 11);
+}
+
+}  // namespace
+}  // namespace peclet
