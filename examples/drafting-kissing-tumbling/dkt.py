@@ -177,7 +177,7 @@ class Result:
     velocity: np.ndarray
     angular_velocity: np.ndarray
     contact_momentum: np.ndarray  # given by contacts during the step, in g cm/s
-    frames: tuple[PlaneSlice, ...]  # of the plane halfway between front and back, in cm and s too
+    frames: tuple[PlaneSlice, ...]  # in cm and s too, heights above the floor
     seconds_per_step: float
     is_interrupted: bool = False
 
@@ -229,7 +229,7 @@ def run(case: Case, steps: int | None = None, *, frames: int = 48, progress: boo
 
     def keep_slice(simulation: CoupledSimulation, always: bool = False) -> None:
         if always or simulation.number_of_steps % interval == 0 or simulation.number_of_steps == steps:
-            kept.append(simulation.take_slice("z", float(case.center[2])))
+            kept.append(take_frame(case, simulation))
 
     is_interrupted = False
     begin = clock.perf_counter()
@@ -245,6 +245,25 @@ def run(case: Case, steps: int | None = None, *, frames: int = 48, progress: boo
     return dataclasses.replace(result, is_interrupted=is_interrupted)
 
 
+WINDOW = (1.0, 1.8)  # width and height of a frame in cm
+
+
+def take_frame(case: Case, simulation: CoupledSimulation) -> PlaneSlice:
+    """The vertical plane through both centres, or across z while these are one above the other."""
+    leader, follower = simulation.body_state()["position"]
+    across = (leader - follower) * (1, 0, 1)
+    if np.linalg.norm(across) < 0.1 * case.resolution:
+        across = np.array([1.0, 0.0, 0.0])
+    center = (leader + follower) / 2
+    floor = case.center[1] - case.tank[1] / 2
+    size = np.array(WINDOW) / case.cell_size
+    # a little more above the spheres than below
+    low = np.clip(center[1] - 0.35 * size[1], floor, floor + case.tank[1] - size[1])
+    a = np.linspace(-0.5, 0.5, 2 * int(size[0]) + 1) * size[0]
+    b = np.linspace(0, 1, 2 * int(size[1]) + 1) * size[1] + low
+    return simulation.sample_plane((center[0], 0, center[2]), (across, (0, 1, 0)), a, b)
+
+
 def collect(case: Case, simulation: CoupledSimulation, frames: list[PlaneSlice], seconds: float) -> Result:
     """From units of the solver to cm, g and s."""
     history = simulation.history
@@ -254,7 +273,7 @@ def collect(case: Case, simulation: CoupledSimulation, frames: list[PlaneSlice],
     def scaled(frame: PlaneSlice) -> PlaneSlice:
         return dataclasses.replace(
             frame,
-            a=(frame.a - floor[0]) * case.cell_size,
+            a=frame.a * case.cell_size,
             b=(frame.b - floor[1]) * case.cell_size,
             distance=frame.distance * case.cell_size,
             velocity_a=frame.velocity_a * speed,
@@ -294,12 +313,6 @@ def wall_distance(result: Result) -> np.ndarray:
     return np.minimum(low, TANK - low).min(axis=2) / DIAMETER - 0.5
 
 
-def relative_sum(impulses: np.ndarray) -> float:
-    """Sum over the bodies, at worst, over the largest impulse."""
-    largest = np.abs(impulses).max(initial=0.0)
-    return float(np.abs(impulses.sum(axis=1)).max() / largest) if largest > 0 else 0.0
-
-
 @dataclasses.dataclass(frozen=True)
 class Measures:
     """Times in s, speeds in cm/s; NaN for what did not happen."""
@@ -312,7 +325,7 @@ class Measures:
     largest_overlap: float  # in diameters
     speeds_before_touch: tuple[float, float]  # along the line of centres, leader and follower
     speeds_after_touch: tuple[float, float]
-    momentum_error: float  # of the contact impulses, relative to the largest of them
+    momentum_error: float  # sum of the contact impulses over both spheres, over the momentum of one of them
 
 
 def measure(result: Result) -> Measures:
@@ -326,6 +339,7 @@ def measure(result: Result) -> Measures:
     if contact is not None:
         along = result.speed_along_line
         before, after = tuple(along[contact - 1].tolist()), tuple(along[contact].tolist())
+    momentum = DENSITY_RATIO * DENSITY * math.pi / 6 * DIAMETER**3 * np.abs(result.velocity).max()
     impulse = result.contact_momentum[touching & (wall_distance(result) > 0.01).all(axis=1)]
     return Measures(
         drafting=first_time(result, faster & approach & (result.time > 0)),
@@ -336,5 +350,5 @@ def measure(result: Result) -> Measures:
         largest_overlap=float(max(0.0, -result.gap.min())),
         speeds_before_touch=before,
         speeds_after_touch=after,
-        momentum_error=relative_sum(impulse),
+        momentum_error=float(np.abs(impulse.sum(axis=1)).max(initial=0) / momentum),
     )

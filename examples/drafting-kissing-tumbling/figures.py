@@ -90,29 +90,17 @@ def pick_frames(result: dkt.Result) -> list[tuple[str, PlaneSlice]]:
 
 
 def draw_slices(result: dkt.Result) -> Figure:
-    """Vorticity halfway between front and back, around the spheres."""
+    """Vorticity in the vertical plane of the two centres."""
     frames = pick_frames(result)
-    largest = max(
-        float(np.quantile(np.abs(frame.vorticity[frame.distance > 0]), 0.998)) for _, frame in frames
-    )
-    limit = max(10.0, 10 * round(largest / 10))
+    strong = [np.quantile(np.abs(frame.vorticity[frame.distance > 0]), 0.99) for _, frame in frames]
+    limit = max(10.0, 10 * round(float(max(strong)) / 10))
     with plt.rc_context(STYLE):
-        figure, axes = plt.subplots(1, len(frames), figsize=(7.6, 4.4), layout="constrained")
+        figure, axes = plt.subplots(1, len(frames), figsize=(7.6, 3.9), layout="constrained")
         for axis, (name, frame) in zip(axes, frames, strict=True):
             image = draw_plane(axis, frame, "vorticity", limit=limit)
-            axis.set(
-                title=f"{name}, {frame.time:.3f} s", xlabel="x (cm)", xlim=dkt.TANK[0] * np.array([-0.5, 0.5])
-            )
-            axis.set_ylim(window(result, frame.time))
+            axis.set_title(f"{name}, {frame.time:.3f} s", fontsize=9)
             axis.spines[["top", "right"]].set_visible(True)
         axes[0].set_ylabel("height (cm)")
+        axes[1].set_xlabel("horizontal distance from the middle of the pair (cm)")
         figure.colorbar(image, ax=axes, label="vorticity (1/s)", extend="both", shrink=0.8)
     return figure
-
-
-def window(result: dkt.Result, time: float, height: float = 1.8) -> tuple[float, float]:
-    """So much of the tank's height, a little more above the spheres than below."""
-    row = int(np.argmin(np.abs(result.time - time)))
-    middle = result.position[row, :, 1].mean() + 0.15 * height
-    low = float(np.clip(middle - height / 2, 0, dkt.TANK[1] - height))
-    return low, low + height

@@ -40,7 +40,7 @@ def describe(result: dkt.Result) -> str:
         text = ", ".join(number(value) for value in pair)
         lines.append(f"  along the line of centres, {label}: leader, follower {text} cm/s")
     lines.append(f"  largest overlap {measures.largest_overlap:.2e} d")
-    lines.append(f"  momentum made by contacts {measures.momentum_error:.1e} of the impulse")
+    lines.append(f"  momentum made by contacts {measures.momentum_error:.1e} of that of a sphere")
     lines.append(f"  {result.seconds_per_step:.3f} s per step")
     return "\n".join(lines)
 
@@ -61,5 +61,7 @@ def claims_table(results: Sequence[dkt.Result]) -> str:
         ["speeds along the line of centres differ after the touch by (cm/s)", *map(number, differences), "0"]
     )
     rows.append(["largest overlap / d", *(f"{m.largest_overlap:.1e}" for m in measured), "below 1e-3"])
-    rows.append(["momentum made by contacts / impulse", *(f"{m.momentum_error:.0e}" for m in measured), "0"])
+    rows.append(
+        ["momentum made by contacts / that of a sphere", *(f"{m.momentum_error:.0e}" for m in measured), "0"]
+    )
     return "\n".join("| " + " | ".join(row) + " |" for row in rows)

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from peclet import _checks
 from peclet.coupling import checkpoint, slices
 from peclet.coupling.bodies import Body, fluid_inertia
@@ -17,6 +17,7 @@ from peclet.coupling.rotation import from_body_axes, to_body_axes
 from peclet.coupling.state import contact_state, flow_state, require_valid, restore
 
 Vectors = NDArray[np.float64]
+_AXES = ("x", "y", "z")
 _MOTION = ("positions", "quaternions", "velocities", "angular_velocities")
 
 
@@ -209,7 +210,7 @@ class CoupledSimulation:
 
     def plot(self, axis: str = "y") -> Any:
         """Position and velocity of all bodies along one axis over time, as a matplotlib figure."""
-        return slices.plot_motion(self.history, _checks.choice(axis, "axis", ("x", "y", "z")))
+        return slices.plot_motion(self.history, _checks.choice(axis, "axis", _AXES))
 
     def plot_slice(self, normal: str = "z", position: float | None = None, *, show: str = "vorticity") -> Any:
         """The flow in a plane (by default through the first body), as a matplotlib figure.
@@ -217,14 +218,34 @@ class CoupledSimulation:
         show: "vorticity" (along the normal) or "speed".
         """
         show = _checks.choice(show, "show", ("vorticity", "speed"))
-        return slices.plot_plane(self.take_slice(normal, position), show)
+        plane = self.take_slice(normal, position)
+        n = _AXES.index(normal)
+        return slices.plot_plane(plane, (_AXES[(n + 1) % 3], _AXES[(n + 2) % 3]), show)
 
     def take_slice(self, normal: str = "z", position: float | None = None) -> slices.PlaneSlice:
-        """The flow in a plane (by default through the first body) as arrays."""
-        normal = _checks.choice(normal, "normal", ("x", "y", "z"))
+        """The flow in a plane across an axis (by default through the first body) as arrays."""
+        n = _AXES.index(_checks.choice(normal, "normal", _AXES))
         if position is None:
-            position = float(self._contacts.get_positions()[0]["xyz".index(normal)])
-        return slices.take(self, normal, _checks.finite(position, "position"))
+            position = float(self._contacts.get_positions()[0][n])
+        return slices.take(self, n, _checks.finite(position, "position"))
+
+    def sample_plane(
+        self, center: Sequence[float], directions: Sequence[Sequence[float]], a: ArrayLike, b: ArrayLike
+    ) -> slices.PlaneSlice:
+        """The flow at the points center + a directions[0] + b directions[1], by linear interpolation.
+
+        directions: two orthogonal vectors, made unit vectors; a, b: ascending coordinates along them.
+        """
+        axes = np.array([_checks.vector(row, f"directions[{n}]") for n, row in enumerate(directions)])
+        lengths = np.linalg.norm(axes, axis=-1)
+        if axes.shape != (2, 3) or not lengths.all() or abs(axes[0] @ axes[1]) > 1e-9 * lengths.prod():
+            raise _checks.wrong_value("directions", "two orthogonal vectors", directions)
+        coordinates = [np.array(values, dtype=np.float64) for values in (a, b)]
+        for name, values in zip("ab", coordinates, strict=True):
+            if values.ndim != 1 or len(values) == 0 or not (np.diff(values) > 0).all():
+                raise _checks.wrong_value(name, "ascending coordinates", values)
+        unit = axes / lengths[:, None]
+        return slices.sample(self, np.array(_checks.vector(center, "center")), unit, *coordinates)
 
     def body_state(self) -> dict[str, Vectors]:
         """Position, velocity, angular velocity and orientation of the bodies as they are now."""

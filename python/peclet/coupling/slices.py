@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import itertools
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -19,15 +20,15 @@ COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 
 @dataclasses.dataclass(frozen=True)
 class PlaneSlice:
-    """The flow in a plane of cell centres; a, b and the normal are a right-handed triple of axes.
+    """The flow in a plane: values at the points center + a directions[0] + b directions[1], indexed [a, b].
 
-    All arrays are indexed [a, b] and hold values at cell centres; inside a body they are those of its motion.
+    Inside a body they are those of its motion. Vorticity is the component along the normal, which is the
+    cross product of the two directions.
     """
 
-    axes: tuple[str, str]
     a: Array
     b: Array
-    distance: Array
+    distance: Array  # to the nearest surface, negative inside solid
     velocity_a: Array
     velocity_b: Array
     speed: Array
@@ -35,70 +36,74 @@ class PlaneSlice:
     time: float
 
 
-def take(simulation: CoupledSimulation, normal: str, position: float) -> PlaneSlice:
-    """The layer of cells whose centres are next to the plane at this position along the normal."""
+def take(simulation: CoupledSimulation, normal: int, position: float) -> PlaneSlice:
+    """The plane across an axis, as wide as the box, sampled beside each cell centre of the layer."""
     flow = simulation.flow
-    n = "xyz".index(normal)
-    axes = ((n + 1) % 3, (n + 2) % 3)
-    spacing, origin, cells = (np.array(values) for values in (flow.spacing, flow.origin, flow.cells))
-    layer = int(np.clip(np.floor((position - origin[n]) / spacing[n]), 0, cells[n] - 1))
-    centers = [origin[d] + spacing[d] * (np.arange(cells[d]) + 0.5) for d in range(3)]
+    axes = ((normal + 1) % 3, (normal + 2) % 3)
+    center = np.zeros(3)
+    center[normal] = position
+    directions = np.eye(3)[list(axes)]
+    return sample(simulation, center, directions, flow.cell_centers()[axes[0]], flow.cell_centers()[axes[1]])
 
-    def plane(array: NDArray[Any]) -> NDArray[Any]:
-        flat = array.take(layer, axis=n)
-        return flat if axes[0] < axes[1] else flat.T
 
-    velocities = (flow.get_u, flow.get_v, flow.get_w)
-    u = [plane(velocities[d]()) for d in axes]
-    distance, owner = plane(flow.get_field("sdf")), plane(flow.get_cut_owner())
-    motion = _rigid_motion(simulation, owner, axes, n, centers, layer)
-    for d in range(2):
-        # the nearer of the two cells beside a face decides whose face it is
-        behind = np.roll(distance, 1, d) < distance
-        closed = distance + np.roll(distance, 1, d) < 0
-        u[d] = np.where(closed, np.where(behind, np.roll(motion[d], 1, d), motion[d]), u[d])
-    along_normal = plane(0.5 * (velocities[n]() + np.roll(velocities[n](), -1, n)))
-    h = [spacing[d] for d in axes]
-    at_corner = (u[1] - np.roll(u[1], 1, 0)) / h[0] - (u[0] - np.roll(u[0], 1, 1)) / h[1]
-    ahead = 0.5 * (at_corner + np.roll(at_corner, -1, 0))
-    at_center = [0.5 * (u[d] + np.roll(u[d], -1, d)) for d in range(2)]
+def sample(simulation: CoupledSimulation, center: Array, directions: Array, a: Array, b: Array) -> PlaneSlice:
+    """Any plane, by trilinear interpolation; directions are two orthogonal unit vectors."""
+    flow = simulation.flow
+    points = center + a[:, None, None] * directions[0] + b[None, :, None] * directions[1]
+    cells = (points - np.array(flow.origin)) / np.array(flow.spacing) - 0.5
+    distance = _interpolate(flow.get_field("sdf"), cells)
+    velocity = np.empty((*distance.shape, 3))
+    for axis, component in enumerate(_filled_velocity(simulation)):
+        velocity[..., axis] = _interpolate(component, cells + 0.5 * np.eye(3)[axis])
+    u, v = (velocity @ direction for direction in directions)
+    along = [
+        np.gradient(w, x, axis=n) if len(x) > 1 else np.zeros_like(w) for w, x, n in ((v, a, 0), (u, b, 1))
+    ]
     return PlaneSlice(
-        axes=("xyz"[axes[0]], "xyz"[axes[1]]),
-        a=centers[axes[0]],
-        b=centers[axes[1]],
+        a=a,
+        b=b,
         distance=distance,
-        velocity_a=at_center[0],
-        velocity_b=at_center[1],
-        speed=np.sqrt(at_center[0] ** 2 + at_center[1] ** 2 + np.where(distance > 0, along_normal, 0) ** 2),
-        vorticity=0.5 * (ahead + np.roll(ahead, -1, 1)),
+        velocity_a=u,
+        velocity_b=v,
+        speed=np.linalg.norm(velocity, axis=-1),
+        vorticity=along[0] - along[1],
         time=simulation.time,
     )
 
 
-def _rigid_motion(
-    simulation: CoupledSimulation,
-    owner: NDArray[np.int32],
-    axes: tuple[int, int],
-    normal: int,
-    centers: list[Array],
-    layer: int,
-) -> list[Array]:
-    """Velocity v + w x r of the body that owns each cell, two components; zero for what stands still."""
-    result = [np.zeros(owner.shape), np.zeros(owner.shape)]
-    state = simulation.body_state()
-    for n, body in enumerate(simulation.bodies):
-        x, v, w = (state[name][n] for name in ("position", "velocity", "angular_velocity"))
-        inside = owner == body.instance
-        arm = [centers[d] - x[d] for d in axes]
-        above = centers[normal][layer] - x[normal]
-        first = v[axes[0]] + w[axes[1]] * above - w[normal] * arm[1][None, :]
-        second = v[axes[1]] + w[normal] * arm[0][:, None] - w[axes[0]] * above
-        result[0] = np.where(inside, np.broadcast_to(first, owner.shape), result[0])
-        result[1] = np.where(inside, np.broadcast_to(second, owner.shape), result[1])
+def _interpolate(field: Array, index: Array) -> Array:
+    """Trilinear in a periodic box, at fractional indices of shape (..., 3)."""
+    low = np.floor(index).astype(int)
+    weight = index - low
+    result = np.zeros(index.shape[:-1])
+    for corner in itertools.product((0, 1), repeat=3):
+        place = (low + corner) % field.shape
+        share = np.where(corner, weight, 1 - weight).prod(axis=-1)
+        result += share * field[place[..., 0], place[..., 1], place[..., 2]]
     return result
 
 
-def plot_plane(plane: PlaneSlice, show: str) -> Any:
+def _filled_velocity(simulation: CoupledSimulation) -> list[Array]:
+    """Velocity components with v + w x r of the moving bodies on the faces inside them."""
+    flow, state = simulation.flow, simulation.body_state()
+    distance, owner = flow.get_field("sdf"), flow.get_cut_owner()
+    extent = np.array(flow.spacing) * flow.cells
+    result = [flow.get_u(), flow.get_v(), flow.get_w()]
+    for axis, component in enumerate(result):
+        behind = np.roll(distance, 1, axis)
+        closed = distance + behind < 0
+        nearest = np.where(behind < distance, np.roll(owner, 1, axis), owner)
+        for n, body in enumerate(simulation.bodies):
+            x, v, w = (state[name][n] for name in ("position", "velocity", "angular_velocity"))
+            inside = np.nonzero(closed & (nearest == body.instance))
+            shift = 0.5 - 0.5 * np.eye(3)[axis]
+            arm = np.array(flow.origin) + (np.transpose(inside) + shift) * flow.spacing - x
+            arm -= extent * np.round(arm / extent)
+            component[inside] = v[axis] + np.cross(w, arm)[:, axis]
+    return result
+
+
+def plot_plane(plane: PlaneSlice, labels: tuple[str, str], show: str) -> Any:
     """Vorticity or speed in colour, solid in grey; returns the matplotlib figure."""
     import matplotlib.pyplot as plt
 
@@ -107,7 +112,7 @@ def plot_plane(plane: PlaneSlice, show: str) -> Any:
     figure, axes = plt.subplots(figsize=(1.6 + height * extent[0] / extent[1], height), layout="constrained")
     image = draw_plane(axes, plane, show)
     figure.colorbar(image, ax=axes, label=f"{show} (1 / time)" if show == "vorticity" else show)
-    axes.set(xlabel=plane.axes[0], ylabel=plane.axes[1], title=f"time {plane.time:g}")
+    axes.set(xlabel=labels[0], ylabel=labels[1], title=f"time {plane.time:g}")
     return figure
 
 
