@@ -44,6 +44,76 @@ struct Norms {
 /// and the low ghosts of the next row), and what it returns for them does not count.
 inline constexpr int vector_length = Layout::alignment;
 
+namespace detail {
+
+/// Reductions are carried in one accumulator per vector lane: over a row in the arithmetic of the body, over
+/// a plane in double precision.
+template <class Result, class T>
+struct RowLanes;
+
+template <class T>
+struct RowLanes<Total, T> {
+  T sum[vector_length] = {};
+  void add(int lane, T value) { sum[lane] += value; }
+};
+
+template <class T>
+struct RowLanes<Norms, T> {
+  T sum[vector_length] = {}, squares[vector_length] = {}, largest[vector_length] = {};
+  void add(int lane, T value) {
+    const T magnitude = value < 0 ? -value : value;
+    sum[lane] += value;
+    squares[lane] += value * value;
+    largest[lane] = magnitude > largest[lane] ? magnitude : largest[lane];
+  }
+};
+
+template <class Result>
+struct Lanes;
+
+template <>
+struct Lanes<Nothing> {
+  Nothing result() const { return {}; }
+};
+
+template <>
+struct Lanes<Total> {
+  Real sum[vector_length] = {};
+
+  template <class T>
+  void add(const RowLanes<Total, T>& row) {
+#pragma omp simd
+    for (int lane = 0; lane < vector_length; ++lane) sum[lane] += row.sum[lane];
+  }
+  Total result() const {
+    Total total;
+    for (const Real value : sum) total.sum += value;
+    return total;
+  }
+};
+
+template <>
+struct Lanes<Norms> {
+  Real sum[vector_length] = {}, squares[vector_length] = {}, largest[vector_length] = {};
+
+  template <class T>
+  void add(const RowLanes<Norms, T>& row) {
+#pragma omp simd
+    for (int lane = 0; lane < vector_length; ++lane) {
+      sum[lane] += row.sum[lane];
+      squares[lane] += row.squares[lane];
+      largest[lane] = row.largest[lane] > largest[lane] ? row.largest[lane] : largest[lane];
+    }
+  }
+  Norms result() const {
+    Norms total;
+    for (int lane = 0; lane < vector_length; ++lane) total.join({sum[lane], squares[lane], largest[lane]});
+    return total;
+  }
+};
+
+}  // namespace detail
+
 /// The body for every cell of the ranges.
 template <class Body>
 struct Stage {
@@ -51,7 +121,7 @@ struct Stage {
   RowRanges rows;
   Body body;
 
-  Result run_row(Index row, int j, int k) const;
+  void run_row(Index row, int j, int k, detail::Lanes<Result>& plane) const;
   Result run_plane(int axis, int plane) const;
   Result launch(const char* label) const;
 };
@@ -112,7 +182,7 @@ class SweepPlan {
 };
 
 inline SweepPlan::SweepPlan(const Int3& cells, const Box& box, const bool (&wraps)[3]) {
-  axis_ = box.extent(1) > box.extent(2) ? 1 : 2;
+  axis_ = box.extent(2) < 8 && box.extent(1) > box.extent(2) ? 1 : 2;
   low_ = box.low[axis_];
   high_ = box.high[axis_];
   wraps_ = wraps[axis_] && box.extent(axis_) == cells[axis_];
@@ -130,36 +200,28 @@ inline int SweepPlan::number_of_slabs(int stages) const {
 }
 
 template <class Body>
-typename Stage<Body>::Result Stage<Body>::run_row(Index row, int j, int k) const {
+void Stage<Body>::run_row(Index row, int j, int k, detail::Lanes<Result>& plane) const {
   const int first = rows.begin(row), last = rows.end(row);
-  if (first >= last) return {};
+  if (first >= last) return;
   const auto cell = body.row(j, k);
-  const int end =
-      Body::may_overrun ? first + (last - first + vector_length - 1) / vector_length * vector_length : last;
+  int i = first;
   if constexpr (std::is_same_v<Result, Nothing>) {
-#pragma omp simd simdlen(vector_length)
-    for (int i = first; i < end; ++i) cell(i);
-    return {};
-  } else if constexpr (std::is_same_v<Result, Total>) {
-    decltype(cell(0)) sum = 0;
-#pragma omp simd simdlen(vector_length) reduction(+ : sum)
-    for (int i = first; i < end; ++i) {
-      const auto value = cell(i);
-      sum += i < last ? value : 0;
+    for (; i + vector_length <= last || (Body::may_overrun && i < last); i += vector_length) {
+#pragma omp simd
+      for (int lane = 0; lane < vector_length; ++lane) cell(i + lane);
     }
-    return {static_cast<Real>(sum)};
+    for (; i < last; ++i) cell(i);
   } else {
-    decltype(cell(0)) sum = 0, squares = 0, largest = 0;
-#pragma omp simd simdlen(vector_length) reduction(+ : sum, squares) reduction(max : largest)
-    for (int i = first; i < end; ++i) {
-      const auto found = cell(i);
-      const auto value = i < last ? found : 0;
-      const auto magnitude = value < 0 ? -value : value;
-      sum += value;
-      squares += value * value;
-      largest = magnitude > largest ? magnitude : largest;
+    detail::RowLanes<Result, decltype(cell(0))> sums;
+    for (; i + vector_length <= last || (Body::may_overrun && i < last); i += vector_length) {
+#pragma omp simd
+      for (int lane = 0; lane < vector_length; ++lane) {
+        const auto value = cell(i + lane);
+        sums.add(lane, i + lane < last ? value : 0);
+      }
     }
-    return {static_cast<Real>(sum), static_cast<Real>(squares), static_cast<Real>(largest)};
+    for (int lane = 0; i < last; ++i, ++lane) sums.add(lane, cell(i));
+    plane.add(sums);
   }
 }
 
@@ -169,12 +231,12 @@ typename Stage<Body>::Result Stage<Body>::run_plane(int axis, int plane) const {
   if (plane < box.low[axis] || plane >= box.high[axis]) return {};
   const int across = 3 - axis;
   const Index ny = box.extent(1);
-  Result result;
+  detail::Lanes<Result> lanes;
   for (int m = box.low[across]; m < box.high[across]; ++m) {
     const int j = axis == 1 ? plane : m, k = axis == 1 ? m : plane;
-    result.join(run_row((j - box.low[1]) + (k - box.low[2]) * ny, j, k));
+    run_row((j - box.low[1]) + (k - box.low[2]) * ny, j, k, lanes);
   }
-  return result;
+  return lanes.result();
 }
 
 namespace detail {

@@ -55,8 +55,7 @@ KOKKOS_INLINE_FUNCTION void write_row(const LevelOperator<Coefficient>& op, int 
 void close_connections(const Connections& connections) {
   for (int via = 0; via < connections.size; ++via)
     for_each_entry(
-        "flow::connect", connections.size, connections.size,
-        KOKKOS_LAMBDA(int j, int i) {
+        "flow::connect", connections.size, connections.size, KOKKOS_LAMBDA(int j, int i) {
           if (connections(i, via) && connections(via, j)) connections(i, j) = 1;
         });
 }

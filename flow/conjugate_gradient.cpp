@@ -8,7 +8,7 @@ namespace {
 
 struct RhsInFluid {
   using Result = Norms;
-  static constexpr bool may_overrun = false;
+  static constexpr bool may_overrun = true;
   LevelOperator<OpenFraction> op;
   const Real* rhs;
   Real mean;
@@ -17,7 +17,7 @@ struct RhsInFluid {
     CoefficientRow<OpenFraction, Real> c;
     const Real* rhs;
     Real mean;
-    KOKKOS_INLINE_FUNCTION Real operator()(int i) const { return c.diagonal(i) > 0 ? rhs[i] - mean : 0; }
+    KOKKOS_INLINE_FUNCTION Real operator()(int i) const { return c.is_open(i) ? rhs[i] - mean : 0; }
   };
   KOKKOS_INLINE_FUNCTION Row row(int j, int k) const {
     return {op.row<Real>(j, k), rhs + op.shape.layout(0, j, k), mean};
@@ -41,7 +41,7 @@ struct TrueResidual {
     float* residual;
     Real mean, scale;
     KOKKOS_INLINE_FUNCTION Real operator()(int i) const {
-      const bool open = c.diagonal(i) > 0;
+      const bool open = c.is_open(i);
       const Real r = open ? c.laplacian(phi, i) - (rhs[i] - mean) : 0;
       residual[i] = static_cast<float>(r * scale);
       if (!open) phi.centre[i] = 0;

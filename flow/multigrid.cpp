@@ -19,23 +19,43 @@ Int3 merge_ratio(const LevelShape& shape, const Real3& spacing) {
   return ratio;
 }
 
-/// Cells of a coarser level whose faces depend on the faces of finest cells in the box.
-Box dependent_cells(const LevelShape& shape, const Box& changed) {
-  const auto floor_divide = [](int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); };
+/// Range of cells along one axis.
+struct Range {
+  int low, high;
+};
+
+/// The cells whose faces may have changed, and one more where a periodic side repeats a face: in one piece,
+/// or in two that are parted by a periodic side.
+std::vector<Range> changed_cells(const LevelShape& finest, const Box& box, int axis) {
+  const int n = finest.cells[axis];
+  int low = box.low[axis] - 2, high = box.high[axis] + 2;
+  if (!finest.sides.is_periodic(axis)) return {{std::max(low, 0), std::min(high, n)}};
+  if (high - low >= n) return {{0, n}};
+  const int shift = low >= 0 ? -(low / n) * n : (n - 1 - low) / n * n;
+  low += shift;
+  high += shift;
+  if (high <= n) return {{low, high}};
+  return {{low, n}, {0, high - n}};
+}
+
+/// The changed finest cells as boxes inside the grid.
+std::vector<Box> pieces_inside(const LevelShape& finest, const std::vector<Box>& changed) {
+  std::vector<Box> pieces;
+  for (const Box& box : changed)
+    for (const Range& x : changed_cells(finest, box, 0))
+      for (const Range& y : changed_cells(finest, box, 1))
+        for (const Range& z : changed_cells(finest, box, 2))
+          if (x.low < x.high && y.low < y.high && z.low < z.high)
+            pieces.push_back({{x.low, y.low, z.low}, {x.high, y.high, z.high}});
+  return pieces;
+}
+
+/// Cells of a coarser level that cover finest cells.
+Box covering_cells(const LevelShape& coarse, const Box& cells) {
   Box box;
   for (int axis = 0; axis < 3; ++axis) {
-    const int n = shape.cells[axis];
-    int low = floor_divide(changed.low[axis] - 1, shape.factor[axis]);
-    int high = floor_divide(changed.high[axis] + 1, shape.factor[axis]) + 1;
-    if (!shape.sides.is_periodic(axis)) {
-      low = std::max(low, 0);
-      high = std::min(high, n);
-    } else if (high - low >= n || low < -n || high > 2 * n) {
-      low = 0;
-      high = n;
-    }
-    box.low[axis] = low;
-    box.high[axis] = std::max(high, low);
+    box.low[axis] = cells.low[axis] / coarse.factor[axis];
+    box.high[axis] = (cells.high[axis] - 1) / coarse.factor[axis] + 1;
   }
   return box;
 }
@@ -122,10 +142,11 @@ void Multigrid::set_open_fractions(const FaceVector<OpenFraction>& open, const R
 }
 
 void Multigrid::update(const std::vector<Box>& changed) const {
+  const std::vector<Box> pieces = pieces_inside(levels_[0].shape, changed);
   for (std::size_t l = 1; l < levels_.size(); ++l) {
     const LevelShape& shape = levels_[l].shape;
-    for (const Box& box : changed) {
-      const Box cells = dependent_cells(shape, box);
+    for (const Box& piece : pieces) {
+      const Box cells = covering_cells(shape, piece);
       if (l == 1)
         derive_coefficients(finest_, shape, cells, levels_[l].coefficients);
       else

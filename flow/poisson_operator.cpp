@@ -7,10 +7,6 @@ namespace {
 
 constexpr int vector_length = Layout::alignment;
 
-KOKKOS_INLINE_FUNCTION int wrapped(int index, int n) {
-  return index < 0 ? index + n : (index >= n ? index - n : index);
-}
-
 /// Sum of the fine coefficients on a coarse face normal to axis, scaled to the coarse distance.
 template <class Coefficient>
 KOKKOS_INLINE_FUNCTION float coarse_coefficient(const LevelOperator<Coefficient>& fine,
@@ -38,8 +34,7 @@ void derive_coefficients(const LevelOperator<Coefficient>& fine, const LevelShap
   const FaceVector<float> c = coefficients;
   for_each_cell(
       "flow::coarsen", box, KOKKOS_LAMBDA(int i, int j, int k) {
-        const Int3 cell{wrapped(i, coarse.cells[0]), wrapped(j, coarse.cells[1]),
-                        wrapped(k, coarse.cells[2])};
+        const Int3 cell{i, j, k};
         for (int axis = 0; axis < 3; ++axis) {
           Int3 face = cell;
           c[axis](face[0], face[1], face[2]) = coarse_coefficient(fine, coarse, axis, face);

@@ -76,18 +76,22 @@ struct NeighbourRows {
   }
 };
 
+/// Ghost row beyond a Fixed side.
+template <class T>
+void fill_ghost_row(const T* row, T* ghost, int n) {
+  for (int i = 0; i < n; ++i) ghost[i] = -row[i];
+}
+
 template <class T>
 KOKKOS_INLINE_FUNCTION SideRow<T> row_beside(const LevelShape& shape, T* centre, int axis, int index,
                                              int high) {
-  const int n = shape.cells[axis];
   const Index step = high ? shape.layout.stride(axis) : -shape.layout.stride(axis);
-  if (index != (high ? n - 1 : 0)) return {centre + step, T(1)};
+  if (index != (high ? shape.cells[axis] - 1 : 0)) return {centre + step, T(1)};
   const PressureSide side = shape.sides.side[axis][high];
-  if (side == PressureSide::Periodic) return {centre - (n - 1) * step, T(1)};
+  if (side == PressureSide::Periodic) return {centre - (shape.cells[axis] - 1) * step, T(1)};
   if (side == PressureSide::Closed) return {centre, T(1)};
-  if (!runs_on_host) return {centre, T(-1)};
-  for (int i = 0; i < shape.cells[0]; ++i) centre[step + i] = -centre[i];
-  return {centre + step, T(1)};
+  KOKKOS_IF_ON_DEVICE((return {centre, T(-1)};))
+  KOKKOS_IF_ON_HOST((fill_ghost_row(centre, centre + step, shape.cells[0]); return {centre + step, T(1)};))
 }
 
 template <class T>
@@ -95,6 +99,8 @@ KOKKOS_INLINE_FUNCTION NeighbourRows<T> neighbour_rows(const LevelShape& shape, 
   const int n = shape.cells[0];
   T* const centre = field + shape.layout(0, j, k);
   const bool periodic = shape.sides.is_periodic(0);
+  const bool low_fixed = shape.sides.side[0][0] == PressureSide::Fixed;
+  const bool high_fixed = shape.sides.side[0][1] == PressureSide::Fixed;
   NeighbourRows<T> rows{centre,
                         row_beside(shape, centre, 1, j, 0),
                         row_beside(shape, centre, 1, j, 1),
@@ -103,8 +109,8 @@ KOKKOS_INLINE_FUNCTION NeighbourRows<T> neighbour_rows(const LevelShape& shape, 
                         n,
                         periodic ? n - 1 : 0,
                         periodic ? 0 : n - 1,
-                        shape.sides.side[0][0] == PressureSide::Fixed ? T(-1) : T(1),
-                        shape.sides.side[0][1] == PressureSide::Fixed ? T(-1) : T(1)};
+                        low_fixed ? T(-1) : T(1),
+                        high_fixed ? T(-1) : T(1)};
   if (runs_on_host) {
     centre[-1] = rows.west_sign * centre[rows.west_source];
     centre[n] = rows.east_sign * centre[rows.east_source];
@@ -117,11 +123,16 @@ template <class Coefficient, class T>
 struct CoefficientRow {
   const Coefficient *x, *south, *north, *below, *above;
   T weight_x, weight_y, weight_z;
+  Coefficient used_x, used_y, used_z;  ///< all bits of an integer where the weight is not zero
 
   /// Sum of the six coefficients; 0 for a cell without an open face, and only there.
   KOKKOS_INLINE_FUNCTION T diagonal(int i) const {
     return weight_x * (value(x[i]) + value(x[i + 1])) + weight_y * (value(south[i]) + value(north[i])) +
            weight_z * (value(below[i]) + value(above[i]));
+  }
+  /// Whether the cell has an open face, for integer coefficients.
+  KOKKOS_INLINE_FUNCTION bool is_open(int i) const {
+    return ((x[i] | x[i + 1]) & used_x) | ((south[i] | north[i]) & used_y) | ((below[i] | above[i]) & used_z);
   }
   /// Sum of coefficient times neighbour.
   KOKKOS_INLINE_FUNCTION T neighbours(const NeighbourRows<T>& phi, int i) const {
@@ -176,7 +187,13 @@ struct LevelOperator {
             z + n + shape.layout.pitch_z,
             static_cast<T>(weight[0]),
             static_cast<T>(weight[1]),
-            static_cast<T>(weight[2])};
+            static_cast<T>(weight[2]),
+            used(0),
+            used(1),
+            used(2)};
+  }
+  KOKKOS_INLINE_FUNCTION Coefficient used(int axis) const {
+    return static_cast<Coefficient>(weight[axis] > 0 ? -1 : 0);
   }
   /// Coefficient of the face low of cell (i, j, k), or of the face of index n beyond the last cell.
   KOKKOS_INLINE_FUNCTION Real face(int axis, int i, int j, int k) const {
@@ -191,7 +208,7 @@ RowRanges coarse_rows(const RowRanges& fine, const LevelShape& coarse, const Int
 RowRanges aligned_rows(const RowRanges& rows, const LevelShape& shape);
 
 /// Coarse coefficients: the sum of the finest open areas over the face, over the distance of the coarse
-/// centres; on the faces of the cells of a box, which may reach over periodic sides.
+/// centres; on the faces of the cells of a box.
 template <class Coefficient>
 void derive_coefficients(const LevelOperator<Coefficient>& fine, const LevelShape& coarse, const Box& box,
                          const FaceVector<float>& coefficients);

@@ -1,0 +1,137 @@
+// Iteration counts of the pressure solver on many grids.
+#include <gtest/gtest.h>
+
+#include "tests/unit/flow/pressure_cases.hpp"
+
+namespace peclet::flow {
+namespace {
+
+using namespace testing;
+
+SolveReport solve_random(const Int3& n, const Real3& spacing, const PressureSides& sides, const Faces& faces,
+                         Real tolerance = 1e-6) {
+  const auto open = make_faces(n, sides, faces);
+  PressureSolver solver(Grid{n, spacing, {0, 0, 0}}, sides);
+  solver.set_open_fractions(open, RowRanges(n));
+  const Field<Real> rhs = random_field(n, 21, 0.1), phi("phi", Layout(n));
+  for_cells(n, [&](int i, int j, int k) {
+    rhs(i, j, k) += std::sin(2 * M_PI * i / n[0]) + std::cos(2 * M_PI * (j + 2.0 * k) / (n[1] + n[2]));
+  });
+  PressureSettings settings;
+  settings.relative_tolerance = tolerance;
+  return solver.solve(rhs, phi, settings);
+}
+
+std::string name_of(const Int3& n) {
+  return std::to_string(n[0]) + " x " + std::to_string(n[1]) + " x " + std::to_string(n[2]);
+}
+
+void expect_few_iterations(const std::vector<Int3>& sizes, int most) {
+  for (const Int3& n : sizes) {
+    const SolveReport report = solve_random(n, {1, 1, 1}, PressureSides(), all_open());
+    EXPECT_TRUE(report.converged) << name_of(n);
+    EXPECT_LE(report.iterations, most) << name_of(n);
+  }
+}
+
+TEST(PressureConvergence, NeedsFewIterationsAtAnySize) {
+  expect_few_iterations({{32, 32, 32},
+                         {48, 40, 56},
+                         {64, 64, 64},
+                         {96, 96, 96},
+                         {31, 37, 41},
+                         {88, 76, 22},
+                         {8, 128, 128},
+                         {128, 128, 8}},
+                        8);
+}
+
+TEST(PressureConvergence, NeedsFewIterationsAtOddSizesAndInThePlane) {
+  expect_few_iterations(
+      {{53, 47, 61}, {97, 101, 103}, {63, 65, 33}, {7, 101, 99}, {129, 3, 65}, {256, 256, 1}, {1, 128, 100}},
+      9);
+}
+
+TEST(PressureConvergence, NeedsFewIterationsAlongALine) {
+  expect_few_iterations({{300, 1, 1}, {1, 300, 1}, {1, 1, 300}}, 12);
+}
+
+TEST(PressureConvergence, SolvesTheSmallestGrids) {
+  for (const Int3& n : {Int3{1, 1, 1}, Int3{2, 1, 1}, Int3{1, 2, 3}, Int3{2, 2, 2}, Int3{4, 4, 4},
+                        Int3{5, 3, 2}, Int3{6, 6, 6}, Int3{17, 2, 5}})
+    for (const PressureSide side : {PressureSide::Periodic, PressureSide::Closed, PressureSide::Fixed}) {
+      PressureSides sides;
+      for (auto& axis : sides.side) axis[0] = axis[1] = side;
+      const SolveReport report = solve_random(n, {1, 1, 1}, sides, all_open(), 1e-11);
+      EXPECT_TRUE(report.converged) << name_of(n) << " side " << static_cast<int>(side);
+      EXPECT_LE(report.iterations, 20) << name_of(n);
+    }
+}
+
+TEST(PressureConvergence, CopesWithUnequalSpacings) {
+  for (const Real3& spacing :
+       {Real3{1, 1, 2}, Real3{1, 1, 4}, Real3{4, 1, 1}, Real3{1, 4, 2}, Real3{1, 1.5, 1}}) {
+    const SolveReport report = solve_random({48, 40, 52}, spacing, PressureSides(), all_open());
+    EXPECT_TRUE(report.converged);
+    EXPECT_LE(report.iterations, 10) << spacing[0] << " " << spacing[1] << " " << spacing[2];
+  }
+}
+
+TEST(PressureConvergence, CopesWithEveryKindOfSide) {
+  for (const PressureSide low : {PressureSide::Closed, PressureSide::Fixed})
+    for (const PressureSide other : {PressureSide::Closed, PressureSide::Fixed, PressureSide::Periodic}) {
+      const PressureSides sides = sides_of(low, PressureSide::Fixed, other, PressureSide::Closed);
+      const SolveReport report = solve_random({45, 38, 64}, {1, 1, 1}, sides, all_open());
+      EXPECT_TRUE(report.converged);
+      EXPECT_LE(report.iterations, 10);
+    }
+}
+
+/// Spheres on a body-centred lattice: close to touching at a solid fraction of 0.5.
+std::vector<Vec3> lattice(int n, int per_side) {
+  std::vector<Vec3> centres;
+  const Real a = static_cast<Real>(n) / per_side;
+  for (int k = 0; k < per_side; ++k)
+    for (int j = 0; j < per_side; ++j)
+      for (int i = 0; i < per_side; ++i)
+        for (const Real s : {0.25, 0.75}) centres.push_back({(i + s) * a, (j + s + 0.02) * a, (k + s) * a});
+  return centres;
+}
+
+TEST(PressureConvergence, CopesWithDensePackings) {
+  const int n = 60, per_side = 3;
+  const Real a = static_cast<Real>(n) / per_side, radius = a * std::cbrt(0.5 / 2 / (4.0 / 3 * M_PI));
+  const SolveReport report =
+      solve_random({n, n, n}, {1, 1, 1}, PressureSides(), spheres({n, n, n}, lattice(n, per_side), radius));
+  EXPECT_TRUE(report.converged);
+  EXPECT_LE(report.iterations, 10);
+}
+
+TEST(PressureConvergence, CopesWithNarrowGaps) {
+  // Two chambers joined by one face that is open by one part in 32768.
+  const Int3 n{40, 32, 36};
+  const auto gap = [](int axis, int i, int j, int k) {
+    if (axis != 2 || (k != 0 && k != 18)) return fully_open;
+    return k == 18 && i == 20 && j == 16 ? OpenFraction{1} : OpenFraction{0};
+  };
+  const SolveReport report = solve_random(n, {1, 1, 1}, PressureSides(), gap);
+  EXPECT_TRUE(report.converged);
+  EXPECT_LE(report.iterations, 25);
+}
+
+TEST(PressureConvergence, CopesWithFacesOpenAtRandom) {
+  const Int3 n{36, 44, 28};
+  for (const int percent_open : {60, 75, 90}) {
+    const auto faces = [&](int axis, int i, int j, int k) -> OpenFraction {
+      std::mt19937 generator(static_cast<unsigned>(((k * n[1] + j) * n[0] + i) * 3 + axis + 1));
+      generator.discard(3);
+      if (static_cast<int>(generator() % 100) >= percent_open) return 0;
+      return static_cast<OpenFraction>(1 + generator() % fully_open);
+    };
+    const SolveReport report = solve_random(n, {1, 1, 1}, PressureSides(), faces);
+    EXPECT_TRUE(report.converged) << percent_open << ' ' << report.iterations << ' ' << report.residual;
+  }
+}
+
+}  // namespace
+}  // namespace peclet::flow
