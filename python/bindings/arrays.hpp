@@ -91,7 +91,8 @@ inline nb::object real_array(nb::handle value, const std::string& name) {
   const auto kind = nb::cast<std::string>(array.attr("dtype").attr("kind"));
   const bool is_empty = nb::cast<std::int64_t>(array.attr("size")) == 0;
   if (kind.find_first_of("biuf") == std::string::npos && !is_empty) {
-    const std::string found = value.is_none() ? "None" : nb::cast<std::string>(array.attr("dtype").attr("name"));
+    const std::string found =
+        value.is_none() ? "None" : nb::cast<std::string>(array.attr("dtype").attr("name"));
     throw nb::type_error((name + ": expected real numbers, found " + found).c_str());
   }
   return array;
@@ -248,19 +249,21 @@ NumpyArray<T> to_numpy(const std::vector<T>& values, Shape shape = {}, Order ord
 
 inline NumpyArray<double> to_numpy(Vec3 v) { return to_numpy(std::vector<double>{v.x, v.y, v.z}); }
 
-/// The numbers of an array as one row of columns per element, without a copy: writing to either changes both. NumPy on
-/// the host, DLPack on a device.
+/// The numbers of an array as one row of columns per element, without a copy: writing to either changes both.
+/// NumPy on the host, DLPack on a device.
 template <class T>
 nb::object view_of(const Array<T>& array, Index rows) {
   constexpr std::size_t columns = sizeof(T) / sizeof(double);
-  const nb::capsule owner(new Array<T>(array), [](void* view) noexcept { delete static_cast<Array<T>*>(view); });
+  const nb::capsule owner(new Array<T>(array),
+                          [](void* view) noexcept { delete static_cast<Array<T>*>(view); });
   const std::size_t shape[] = {static_cast<std::size_t>(rows), columns};
   auto* numbers = reinterpret_cast<double*>(array.data());
   constexpr std::size_t axes = columns == 1 ? 1 : 2;
   if constexpr (runs_on_host)
     return nb::cast(nb::ndarray<nb::numpy, double>(numbers, axes, shape, owner), nb::rv_policy::reference);
   else
-    return nb::cast(nb::ndarray<double>(numbers, axes, shape, owner, nullptr, nb::dtype<double>(), nb::device::cuda::value),
+    return nb::cast(nb::ndarray<double>(numbers, axes, shape, owner, nullptr, nb::dtype<double>(),
+                                        nb::device::cuda::value),
                     nb::rv_policy::reference);
 }
 
