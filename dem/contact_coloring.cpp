@@ -28,6 +28,9 @@ struct Round {
     return particle >= 0 &&
            !is_immovable(particles.inverse_mass(particle), particles.inverse_inertia(particle));
   }
+  KOKKOS_INLINE_FUNCTION bool is_exhausted(int particle) const {
+    return moves(particle) && used(particle) == ~std::uint64_t{0};
+  }
 };
 
 void clear(const Round& round) {
@@ -39,12 +42,17 @@ void clear(const Round& round) {
   for_each("dem::clear_used_colors", round.keys.rows, KOKKOS_LAMBDA(Index n) { round.used(n) = 0; });
 }
 
+/// Contacts of a particle that has used all colors go without.
 void bid(const Round& round) {
   for_each("dem::reset_bids", round.keys.rows, KOKKOS_LAMBDA(Index n) { round.best(n) = 0; });
   for_each(
       "dem::bid", round.number_waiting, KOKKOS_LAMBDA(Index m) {
         const Index n = round.waiting(m);
         const ContactKey key = round.keys.keys(n);
+        if (round.is_exhausted(key.a) || round.is_exhausted(key.b)) {
+          round.colors(n) = no_color_left;
+          return;
+        }
         if (round.moves(key.a)) Kokkos::atomic_max(&round.best(key.a), priority_of(n) + 1);
         if (round.moves(key.b)) Kokkos::atomic_max(&round.best(key.b), priority_of(n) + 1);
       });
@@ -55,6 +63,7 @@ void take_colors(const Round& round) {
   for_each(
       "dem::take_colors", round.number_waiting, KOKKOS_LAMBDA(Index m) {
         const Index n = round.waiting(m);
+        if (round.colors(n) != none) return;
         const ContactKey key = round.keys.keys(n);
         const bool moves_a = round.moves(key.a), moves_b = round.moves(key.b);
         if (moves_a && round.best(key.a) != priority_of(n) + 1) return;

@@ -83,12 +83,26 @@ KOKKOS_INLINE_FUNCTION bool comes_before(const ContactKey& p, const ContactKey& 
   return p.b != q.b ? p.b < q.b : p.image < q.image;
 }
 
-KOKKOS_INLINE_FUNCTION void sort_row(ContactKey* row, Index count) {
-  for (Index n = 1; n < count; ++n) {
-    const ContactKey key = row[n];
-    Index m = n;
-    for (; m > 0 && comes_before(key, row[m - 1]); --m) row[m] = row[m - 1];
-    row[m] = key;
+/// Let the key at parent sink in a heap of so many keys.
+KOKKOS_INLINE_FUNCTION void sink(ContactKey* heap, int parent, int count) {
+  const ContactKey key = heap[parent];
+  for (int child = 2 * parent + 1; child < count; child = 2 * parent + 1) {
+    if (child + 1 < count && comes_before(heap[child], heap[child + 1])) ++child;
+    if (!comes_before(key, heap[child])) break;
+    heap[parent] = heap[child];
+    parent = child;
+  }
+  heap[parent] = key;
+}
+
+/// Heapsort: in place, and n log n even for a particle that many others touch.
+KOKKOS_INLINE_FUNCTION void sort_row(ContactKey* row, int count) {
+  for (int n = count / 2 - 1; n >= 0; --n) sink(row, n, count);
+  for (int n = count - 1; n > 0; --n) {
+    const ContactKey last = row[n];
+    row[n] = row[0];
+    row[0] = last;
+    sink(row, 0, n);
   }
 }
 
@@ -128,19 +142,27 @@ KOKKOS_INLINE_FUNCTION int opposite_image(int image) {
   return ((128 - turns_x) * 256 + 128 - turns_y) * 256 + 128 - turns_z;
 }
 
-KOKKOS_INLINE_FUNCTION Index find_key(const ContactKeys& keys, Index a, int b, int image) {
-  if (a < keys.rows)
-    for (Index n = keys.row_begin(a); n < keys.row_begin(a + 1); ++n)
-      if (keys.keys(n).b == b && keys.keys(n).image == image) return n;
-  return -1;
+/// Place of a key, or -1; by bisection of the sorted row.
+KOKKOS_INLINE_FUNCTION Index find_key(const ContactKeys& keys, const ContactKey& key) {
+  if (key.a >= keys.rows) return -1;
+  Index low = keys.row_begin(key.a), high = keys.row_begin(key.a + 1);
+  const Index end = high;
+  while (low < high) {
+    const Index middle = (low + high) / 2;
+    if (comes_before(keys.keys(middle), key))
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low < end && !comes_before(key, keys.keys(low)) ? low : -1;
 }
 
 /// Which of a pair comes first may have changed since.
 KOKKOS_INLINE_FUNCTION void recall(const ContactHistory& history, const ContactKey& key, Contact& c) {
-  Index n = find_key(history.keys, key.a, key.b, key.image);
+  Index n = find_key(history.keys, key);
   Real sign = 1;
   if (n < 0 && key.b >= 0) {
-    n = find_key(history.keys, key.b, key.a, opposite_image(key.image));
+    n = find_key(history.keys, {key.b, key.a, opposite_image(key.image)});
     sign = -1;
   }
   constexpr Real same_direction = 0.9;

@@ -26,16 +26,17 @@ TEST(ContactColoring, AParticleWithMoreContactsThanColorsIsServedInTurn) {
   // small spheres all over a large one
   std::vector<Vec3> x{{0, 0, 0}};
   std::vector<Real> scale{1};
-  for (const Vec3& v : testing::random_vectors(120, {-1, -1, -1}, {1, 1, 1}, 3)) {
-    x.push_back(1.01 * normalized(v));
-    scale.push_back(0.01);
+  const int count = 20000;
+  for (const Vec3& v : testing::random_vectors(count, {-1, -1, -1}, {1, 1, 1}, 3)) {
+    x.push_back(1.001 * normalized(v));
+    scale.push_back(0.001);
   }
   Simulation simulation = testing::spheres(x, 1);
   simulation.particles().set_scales(scale);
   simulation.step(0.01);
   const auto [conflicts, uncolored] = coloring_conflicts(simulation);
   EXPECT_EQ(conflicts, 0);
-  EXPECT_GE(uncolored, 120 - ContactOrder::maximum_colors);
+  EXPECT_GE(uncolored, count - ContactOrder::maximum_colors);
 }
 
 TEST(ContactColoring, AFixedParticleNeedsNoColorsOfItsOwn) {
