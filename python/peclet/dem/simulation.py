@@ -328,10 +328,10 @@ class Simulation(OlderNames):
     def step(self, dt: float | None = None) -> None:
         """One substep of length dt, or n substeps of the length given to set_dt::
 
-            step(0.01)                      one substep
-            step(0)                         relax(1)
-            set_dt(0.01); step(); step(9)   1 and 9 substeps: whole numbers count once set_dt was called
-            step()                          relax(1), while there is no dt
+        step(0.01)                      one substep
+        step(0)                         relax(1)
+        set_dt(0.01); step(); step(9)   1 and 9 substeps: whole numbers count once set_dt was called
+        step()                          relax(1), while there is no dt
         """
         if dt is None:
             dt = 1 if self._dt > 0 else 0
