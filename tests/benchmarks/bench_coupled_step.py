@@ -7,6 +7,7 @@ peclet-geom); without it, our own figures are printed alone. Both run the same s
 """
 
 import argparse
+import importlib
 import itertools
 import json
 import os
@@ -16,14 +17,26 @@ import statistics
 import subprocess
 import sys
 import time
+import types
 
 SCRIPT = pathlib.Path(__file__).resolve().parents[1] / "validation" / "compatible_script.py"
 CELLS = {6: 48 * 160 * 48, 8: 64 * 208 * 64, 12: 88 * 304 * 88}
 WARM_UP = 3  # steps that allocate and start threads
 
 
+def provide_geom() -> None:
+    """Newer versions of the reference call peclet.core.geom peclet.geom."""
+    try:
+        importlib.import_module("peclet.core.geom")
+    except ModuleNotFoundError:
+        core = types.ModuleType("peclet.core")
+        core.geom = importlib.import_module("peclet.geom")
+        sys.modules["peclet.core"] = core
+
+
 def measure(resolution: int, steps: int) -> None:
     """Run the script in this process; print times and memory as one line of JSON."""
+    provide_geom()
     sys.argv = [str(SCRIPT), str(steps + WARM_UP), str(resolution)]
     script: dict = {"__name__": "__main__", "__file__": str(SCRIPT)}
     source = SCRIPT.read_text(encoding="utf-8").partition('if __name__ == "__main__":')[0]
