@@ -56,8 +56,6 @@ Solver::Solver(const Grid& grid)
 void Solver::change_settings(const Settings& settings) { settings_ = settings; }
 
 void Solver::set_scene(const Scene& scene, bool periodic_images) {
-  scene_ = scene;
-  scene_has_images_ = periodic_images;
   bodies_ = Bodies(scene, grid_, periodic_images, periodic_);
   requested_poses_.assign(static_cast<std::size_t>(bodies_.count()), std::nullopt);
   loads_.clear();
@@ -72,11 +70,7 @@ void Solver::set_sampled_solid(const Field<Real>& distance) {
 }
 
 void Solver::build_geometry(bool keep_flow) {
-  for (int b = 0; b < bodies_.count(); ++b) {
-    auto& requested = requested_poses_[static_cast<std::size_t>(b)];
-    if (requested) bodies_.set_pose(b, requested->translation, requested->rotation);
-    requested.reset();
-  }
+  take_requested_poses();
   boundary_.build(bodies_, samples_);
   geometry_rebuilt();
   if (!keep_flow) {
@@ -88,6 +82,14 @@ void Solver::build_geometry(bool keep_flow) {
   geometry_stale_ = false;
   wall_velocity_stale_ = false;
   velocity_changed();
+}
+
+void Solver::take_requested_poses() {
+  for (int b = 0; b < bodies_.count(); ++b) {
+    auto& requested = requested_poses_[static_cast<std::size_t>(b)];
+    if (requested) bodies_.set_pose(b, requested->translation, requested->rotation);
+    requested.reset();
+  }
 }
 
 void Solver::geometry_rebuilt() {
@@ -141,11 +143,7 @@ void Solver::update_geometry() {
   // faces about to be uncovered take the velocity of the body that covers them
   boundary_.refresh_velocity(bodies_);
   impose_body_motion();
-  for (int b = 0; b < bodies_.count(); ++b) {
-    auto& requested = requested_poses_[static_cast<std::size_t>(b)];
-    if (requested) bodies_.set_pose(b, requested->translation, requested->rotation);
-    requested.reset();
-  }
+  take_requested_poses();
   boundary_.update(bodies_, pressure_);
   pressure_solver_.update_open_fractions(boundary_.changed());
   impose_body_motion();

@@ -75,6 +75,7 @@ class Solver {
   void predict_velocity(const MomentumTerms& terms, Real velocity_scale);
   void project_velocity(Real velocity_scale, Real implicit_weight);
   void impose_body_motion();
+  void take_requested_poses();
   void promote_moved_bodies();
   void geometry_rebuilt();
   MomentumTerms momentum_terms() const;
@@ -82,8 +83,6 @@ class Solver {
   Grid grid_;
   Periodicity periodic_;
   Settings settings_;
-  Scene scene_;
-  bool scene_has_images_ = false;
   Bodies bodies_;
   std::vector<std::optional<Pose>> requested_poses_;
   ImmersedBoundary boundary_;
