@@ -21,11 +21,6 @@ void CutCells::reserve(Index capacity) {
 
 namespace {
 
-KOKKOS_INLINE_FUNCTION int nearest_owner(const SolidSampler& solid, int c, Index p, Vec3 x) {
-  const int low = solid.owner[p - solid.owner.layout().stride(c)], high = solid.owner[p];
-  return low == high || solid.distance(low, x) < solid.distance(high, x) ? low : high;
-}
-
 KOKKOS_INLINE_FUNCTION bool is_cut(const FaceVector<OpenFraction>& open, Index n) {
   bool any_open = false, any_closed = false;
   for (int a = 0; a < 3; ++a) {

@@ -121,6 +121,12 @@ KOKKOS_INLINE_FUNCTION FaceOpening face_opening(const SolidSampler& solid, int a
   return face;
 }
 
+/// Nearer to x of the bodies that own the two cells beside the low face p of component c.
+KOKKOS_INLINE_FUNCTION int nearest_owner(const SolidSampler& solid, int c, Index p, Vec3 x) {
+  const int low = solid.owner[p - solid.owner.layout().stride(c)], high = solid.owner[p];
+  return low == high || solid.distance(low, x) < solid.distance(high, x) ? low : high;
+}
+
 /// Distance from x to the wall along the segment towards y, as a fraction of the segment: root of the
 /// signed distance by safeguarded false position; 1 where the solid begins beyond y.
 KOKKOS_INLINE_FUNCTION Real wall_crossing(const SolidSampler& solid, int owner_a, int owner_b, Vec3 x,

@@ -22,9 +22,7 @@ KOKKOS_INLINE_FUNCTION void fill_row(const WallRows& rows, Index row, int c, con
   const Layout& layout = open.x.layout();
   const Index p = layout(cell.i, cell.j, cell.k);
   const Vec3 x = solid.grid.face_center(c, cell.i, cell.j, cell.k);
-  const int own_low = solid.owner[p - layout.stride(c)], own_high = solid.owner[p];
-  const int nearest =
-      own_low == own_high || solid.distance(own_low, x) < solid.distance(own_high, x) ? own_low : own_high;
+  const int nearest = nearest_owner(solid, c, p, x);
   int walls = 0;
   for (int a = 0; a < 3; ++a) {
     Real distance[2];
@@ -37,8 +35,7 @@ KOKKOS_INLINE_FUNCTION void fill_row(const WallRows& rows, Index row, int c, con
       walls |= 1 << d;
       Vec3 y = x;
       y[a] += (s ? 1 : -1) * solid.grid.spacing[a];
-      const int low = solid.owner[q - layout.stride(c)], high = solid.owner[q];
-      const int wall = low == high || solid.distance(low, y) < solid.distance(high, y) ? low : high;
+      const int wall = nearest_owner(solid, c, q, y);
       rows.owner(row, d) = wall;
       const Real crossing = wall_crossing(solid, wall, nearest, x, y);
       distance[s] = crossing > smallest_wall_distance ? crossing : smallest_wall_distance;
