@@ -31,7 +31,8 @@ struct Grid {
 };
 
 /// Linear index of (i, j, k) with x fastest and ghost_width layers around the cells. A row starts on a
-/// 64-byte boundary and is padded, and the high ghosts of a row precede the low ghosts of the next one.
+/// 64-byte boundary and is padded, and the high ghosts of a row precede the low ghosts of the next one. One
+/// plane more than the ghosts is there, so that stencils centred on index n along z stay inside.
 /// All fields of one layout share their linear indices, whatever their element type.
 struct Layout {
   static constexpr int ghost_width = 2;
@@ -47,7 +48,7 @@ struct Layout {
     pitch_y = round_up(n[0] + 2 * g);
     pitch_z = pitch_y * (n[1] + 2 * g);
     offset = round_up(g) + g * pitch_y + g * pitch_z;
-    size = round_up(g) + pitch_z * (n[2] + 2 * g) + alignment;
+    size = round_up(g) + pitch_z * (n[2] + 2 * g + 1) + alignment;
   }
   KOKKOS_INLINE_FUNCTION Index operator()(int i, int j, int k) const {
     return offset + i + pitch_y * j + pitch_z * k;

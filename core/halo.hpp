@@ -10,8 +10,28 @@ struct Periodicity {
   bool axis[3] = {true, true, true};
 };
 
+/// Fill the ghost layers beyond both sides of one periodic axis: layers.low[axis] to layers.high[axis] count
+/// depths from the side; along the other axes layers gives the cells (and ghosts) to treat. Cells along
+/// short axes (fewer cells than ghosts) repeat as often as needed.
+template <class T>
+void fill_periodic_layers(const Field<T>& field, int axis, const Box& layers) {
+  const int m = field.layout().cells[axis];
+  for_each_cell(
+      "core::fill_periodic_ghosts", layers, KOKKOS_LAMBDA(int i, int j, int k) {
+        const int depth = axis == 0 ? i : (axis == 1 ? j : k);  // 0 is the layer next to the cells
+        const int source_high = depth % m;
+        const int source_low = m - 1 - source_high;
+        const int ni = axis == 0, nj = axis == 1, nk = axis == 2;
+        const int bi = i * !ni, bj = j * !nj, bk = k * !nk;
+        field(bi + ni * (m + depth), bj + nj * (m + depth), bk + nk * (m + depth)) =
+            field(bi + ni * source_high, bj + nj * source_high, bk + nk * source_high);
+        field(bi - ni * (1 + depth), bj - nj * (1 + depth), bk - nk * (1 + depth)) =
+            field(bi + ni * source_low, bj + nj * source_low, bk + nk * source_low);
+      });
+}
+
 /// Fill width ghost layers (at most Layout::ghost_width) along the periodic axes, edges and corners
-/// included. Cells along short axes (fewer cells than ghosts) repeat as often as needed.
+/// included.
 template <class T>
 void fill_periodic_ghosts(const Field<T>& field, const Periodicity& periodic,
                           int width = Layout::ghost_width) {
@@ -22,19 +42,7 @@ void fill_periodic_ghosts(const Field<T>& field, const Periodicity& periodic,
       Box ghosts{low, high};
       ghosts.low[axis] = 0;
       ghosts.high[axis] = width;
-      const int m = n[axis];
-      for_each_cell(
-          "core::fill_periodic_ghosts", ghosts, KOKKOS_LAMBDA(int i, int j, int k) {
-            const int depth = axis == 0 ? i : (axis == 1 ? j : k);  // 0 is the layer next to the cells
-            const int source_high = depth % m;
-            const int source_low = m - 1 - source_high;
-            const int ni = axis == 0, nj = axis == 1, nk = axis == 2;
-            const int bi = i * !ni, bj = j * !nj, bk = k * !nk;
-            field(bi + ni * (m + depth), bj + nj * (m + depth), bk + nk * (m + depth)) =
-                field(bi + ni * source_high, bj + nj * source_high, bk + nk * source_high);
-            field(bi - ni * (1 + depth), bj - nj * (1 + depth), bk - nk * (1 + depth)) =
-                field(bi + ni * source_low, bj + nj * source_low, bk + nk * source_low);
-          });
+      fill_periodic_layers(field, axis, ghosts);
     }
     low[axis] = periodic.axis[axis] ? -width : 0;
     high[axis] = n[axis] + (periodic.axis[axis] ? width : 0);

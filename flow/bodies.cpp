@@ -40,7 +40,7 @@ bool is_at_rest(const Twist& twist) {
 }  // namespace
 
 Bodies::Bodies(const Scene& scene, const Grid& grid, bool periodic_images, const Periodicity& domain)
-    : grid_(grid), domain_(domain) {
+    : grid_(grid), periodic_images_(periodic_images) {
   std::vector<int> roots;
   for (const SceneInstance& instance : scene.instances()) {
     const auto found = std::find(roots.begin(), roots.end(), instance.root);
@@ -58,11 +58,16 @@ Bodies::Bodies(const Scene& scene, const Grid& grid, bool periodic_images, const
     pinned_.push_back(instance.center_pinned);
   }
   geometry_.program = SceneProgram(scene, roots);
-  geometry_.box = period_of(grid, domain);
-  geometry_.images = geometry_.box;
-  for (int a = 0; a < 3; ++a) geometry_.images.axis[a] = geometry_.images.axis[a] && periodic_images;
-  for (Body& body : bodies_) compare_with_periods(body);
+  set_domain(domain);
   geometry_.bodies = Array<Body>("flow::bodies", bodies_.size());
+}
+
+void Bodies::set_domain(const Periodicity& domain) {
+  geometry_.box = period_of(grid_, domain);
+  geometry_.images = geometry_.box;
+  for (int a = 0; a < 3; ++a) geometry_.images.axis[a] = geometry_.images.axis[a] && periodic_images_;
+  for (Body& body : bodies_) compare_with_periods(body);
+  stale_ = true;
 }
 
 void Bodies::compare_with_periods(Body& body) const {

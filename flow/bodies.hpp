@@ -109,6 +109,8 @@ class Bodies {
   void set_twist(int b, Twist twist);
   void pin_center(int b, Vec3 center);
   void set_dynamic(int b);
+  /// Which sides of the box are periodic.
+  void set_domain(const Periodicity& domain);
 
   /// Device copy of the present state.
   const BodyGeometry& geometry();
@@ -120,11 +122,10 @@ class Bodies {
   void compare_with_periods(Body& body) const;
 
   Grid grid_;
-  Periodicity domain_;
   BodyGeometry geometry_;
   std::vector<Body> bodies_;
   std::vector<bool> pinned_;
-  bool stale_ = true;
+  bool periodic_images_ = false, stale_ = true;
 };
 
 /// Signed distance and nearest body of every cell, from all bodies and, where allocated, the samples.

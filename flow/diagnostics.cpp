@@ -15,6 +15,21 @@ Real largest_component(const RowRanges& rows, const FaceVector<Real>& velocity) 
       });
 }
 
+Real largest_courant_rate(const RowRanges& rows, const FaceVector<Real>& velocity, const Real3& spacing) {
+  const FaceVector<Real> u = velocity;
+  const Real3 h = spacing;
+  return max_cells(
+      "flow::largest_courant_rate", rows, KOKKOS_LAMBDA(int i, int j, int k) {
+        const Index p = u.x.layout()(i, j, k);
+        Real rate = 0;
+        for (int a = 0; a < 3; ++a) {
+          const Real low = Kokkos::abs(u[a][p]), high = Kokkos::abs(u[a][p + u.x.layout().stride(a)]);
+          rate += (low > high ? low : high) / h[a];
+        }
+        return rate;
+      });
+}
+
 void mask_closed_faces(const RowRanges& whole, const FaceVector<OpenFraction>& open,
                        const FaceVector<Real>& velocity) {
   const FaceVector<OpenFraction> o = open;

@@ -9,6 +9,9 @@ namespace peclet::flow {
 
 Real largest_component(const RowRanges& rows, const FaceVector<Real>& velocity);
 
+/// Largest over the cells of sum_a |u_a| / h_a, the larger of both faces along each axis.
+Real largest_courant_rate(const RowRanges& rows, const FaceVector<Real>& velocity, const Real3& spacing);
+
 /// velocity = 0 on closed faces.
 void mask_closed_faces(const RowRanges& whole, const FaceVector<OpenFraction>& open,
                        const FaceVector<Real>& velocity);

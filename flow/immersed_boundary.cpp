@@ -109,12 +109,13 @@ void mark_superseded(const Field<std::uint8_t>& in_region, const WallRows& rows)
 }
 
 /// Pressure of closed cells beside open ones := mean over the open neighbours.
-void extrapolate_pressure(const FaceVector<OpenFraction>& open, const RegionList& regions,
-                          const Field<Real>& pressure) {
+void extrapolate_pressure(const FaceVector<OpenFraction>& open, const DomainSides& sides,
+                          const RegionList& regions, const Field<Real>& pressure) {
   const RegionView region = regions.view();
   const FaceVector<OpenFraction> fraction = open;
   const Field<Real> p = pressure;
   const Int3 cells = pressure.layout().cells;
+  const DomainSides box = sides;
   for_each(
       "flow::extrapolate_pressure", regions.number_of_cells(), KOKKOS_LAMBDA(Index m) {
         const RegionCell cell = region.cell(m);
@@ -130,6 +131,7 @@ void extrapolate_pressure(const FaceVector<OpenFraction>& open, const RegionList
           const int a = d / 2;
           int q[3] = {at[0], at[1], at[2]};
           q[a] += d % 2 ? 1 : -1;
+          if (!box.is_periodic(a) && (q[a] < 0 || q[a] == cells[a])) continue;
           q[a] = q[a] < 0 ? q[a] + cells[a] : (q[a] >= cells[a] ? q[a] - cells[a] : q[a]);
           const Index neighbor = layout(q[0], q[1], q[2]);
           bool is_open = false;
@@ -190,9 +192,9 @@ void restore_fixed(const SolidSampler& solid, const Field<Real>& fixed_sdf, cons
 
 }  // namespace
 
-ImmersedBoundary::ImmersedBoundary(const Grid& grid, const Periodicity& periodic)
+ImmersedBoundary::ImmersedBoundary(const Grid& grid, const DomainSides& sides)
     : grid_(grid),
-      periodic_(periodic),
+      sides_(sides),
       open_("flow::open", Layout(grid.cells)),
       rows_(grid.cells),
       regions_(grid.cells) {
@@ -240,24 +242,24 @@ void ImmersedBoundary::sample_fixed(Bodies& bodies) {
     if (box.size() > 0) region.assign({box}, {b});
     sample_body(solid_, region);
   }
-  fill_periodic_ghosts(solid_.sdf, periodic_);
-  fill_periodic_ghosts(solid_.owner, periodic_);
+  fill_mirrored_ghosts(solid_.sdf, sides_);
+  fill_mirrored_ghosts(solid_.owner, sides_);
   open_all_faces(solid_, open_);
-  for (int a = 0; a < 3; ++a) fill_periodic_ghosts(open_[a], periodic_);
+  fill_open_ghosts(open_, solid_.sdf, sides_);
   rows_ = open_row_ranges(open_, grid_.cells);
   RegionList whole(grid_.cells);
   whole.assign({Box{{0, 0, 0}, grid_.cells}}, {no_owner});
   const Array<Index> positions("flow::whole_grid_positions",
                                static_cast<std::size_t>(whole.number_of_cells()));
   for (int c = 0; c < 3; ++c) {
-    build_wall_rows(c, solid_, open_, whole, positions, fixed_rows_[c]);
+    build_wall_rows(c, solid_, open_, sides_, whole, positions, fixed_rows_[c]);
     refresh_wall_velocity(c, solid_, fixed_rows_[c]);
   }
 }
 
 void ImmersedBoundary::update(Bodies& bodies, const Field<Real>& pressure) {
   changed_ = regions_.boxes_inside();
-  if (pressure.is_allocated()) extrapolate_pressure(open_, regions_, pressure);
+  if (pressure.is_allocated()) extrapolate_pressure(open_, sides_, regions_, pressure);
   restore_fixed(solid_, fixed_sdf_, fixed_owner_, open_, fixed_open_, in_region_, regions_);
   std::vector<Box> boxes;
   std::vector<int> owners;
@@ -280,14 +282,14 @@ void ImmersedBoundary::sample_moving(const RegionList& regions) {
   const auto total = static_cast<std::size_t>(regions.number_of_cells());
   if (scratch_.extent(0) < total) scratch_ = Array<Index>("flow::region_positions", total + total / 4);
   sample_region_cells(solid_, fixed_sdf_, fixed_owner_, in_region_, regions);
-  fill_periodic_ghosts(solid_.sdf, periodic_, 1);
-  fill_periodic_ghosts(solid_.owner, periodic_, 1);
+  fill_mirrored_ghosts(solid_.sdf, sides_, 1);
+  fill_mirrored_ghosts(solid_.owner, sides_, 1);
   open_region_faces(solid_, open_, regions);
-  for (int a = 0; a < 3; ++a) fill_periodic_ghosts(open_[a], periodic_);
+  fill_open_ghosts(open_, solid_.sdf, sides_);
   for (int c = 0; c < 3; ++c) {
     mark_superseded(in_region_, fixed_rows_[c]);
-    build_wall_rows(c, solid_, open_, regions, scratch_, moving_rows_[c]);
-    build_body_faces(c, solid_, open_, regions, scratch_, body_faces_[c]);
+    build_wall_rows(c, solid_, open_, sides_, regions, scratch_, moving_rows_[c]);
+    build_body_faces(c, solid_, open_, sides_, regions, scratch_, body_faces_[c]);
   }
   build_cut_cells(open_, regions, scratch_, cut_cells_);
 }
@@ -307,7 +309,7 @@ void ImmersedBoundary::refresh_velocity(Bodies& bodies) {
     refresh_wall_velocity(c, solid_, moving_rows_[c]);
     refresh_body_faces(c, solid_, body_faces_[c]);
   }
-  refresh_cut_cells(solid_, open_, cut_cells_);
+  refresh_cut_cells(solid_, open_, sides_, cut_cells_);
 }
 
 }  // namespace peclet::flow

@@ -3,6 +3,7 @@
 // Fixed bodies are sampled once; an update touches only the cells around moving ones, where they were and
 // where they are.
 #include "flow/bodies.hpp"
+#include "flow/domain_sides.hpp"
 #include "flow/moving_walls.hpp"
 #include "flow/region_list.hpp"
 #include "flow/solid_sampler.hpp"
@@ -12,7 +13,7 @@ namespace peclet::flow {
 
 class ImmersedBoundary {
  public:
-  ImmersedBoundary(const Grid& grid, const Periodicity& periodic);
+  ImmersedBoundary(const Grid& grid, const DomainSides& sides);
 
   /// Sample everything: fixed bodies and, if allocated, the solid given as distances at cell centres.
   void build(Bodies& bodies, const Field<Real>& samples);
@@ -39,7 +40,7 @@ class ImmersedBoundary {
   void sample_moving(const RegionList& regions);
 
   Grid grid_;
-  Periodicity periodic_;
+  DomainSides sides_;
   SolidSampler solid_;
   FaceVector<OpenFraction> open_, fixed_open_;
   Field<Real> fixed_sdf_;

@@ -242,14 +242,14 @@ void residual_with_scheme(int c, const MomentumTerms& terms, const SweepPlan& pl
 
 }  // namespace
 
-Real extrapolate_velocity(const SweepPlan& plan, const RowRanges& rows, const FaceVector<Real>& velocity,
-                          const FaceVector<Real>& previous, Real step_ratio,
+Real extrapolate_velocity(const SweepPlan (&plan)[3], const RowRanges (&rows)[3],
+                          const FaceVector<Real>& velocity, const FaceVector<Real>& previous, Real step_ratio,
                           const FaceVector<Real>& extrapolated) {
   Real largest = 0;
   for (int c = 0; c < 3; ++c) {
     const Extrapolation body{velocity[c].layout(), velocity[c].data(), previous[c].data(),
                              extrapolated[c].data(), 0.5 * step_ratio};
-    const Norms norms = sweep("flow::extrapolate_velocity", plan, Stage{rows, body});
+    const Norms norms = sweep("flow::extrapolate_velocity", plan[c], Stage{rows[c], body});
     largest = norms.largest > largest ? norms.largest : largest;
   }
   return largest;

@@ -27,9 +27,9 @@ struct MomentumTerms {
   AdvectionScheme scheme = AdvectionScheme::None;
 };
 
-/// extrapolated = u + r/2 (u - u_old); returns its largest component.
-Real extrapolate_velocity(const SweepPlan& plan, const RowRanges& rows, const FaceVector<Real>& velocity,
-                          const FaceVector<Real>& previous, Real step_ratio,
+/// extrapolated = u + r/2 (u - u_old); returns its largest component. plan and rows: of each component.
+Real extrapolate_velocity(const SweepPlan (&plan)[3], const RowRanges (&rows)[3],
+                          const FaceVector<Real>& velocity, const FaceVector<Real>& previous, Real step_ratio,
                           const FaceVector<Real>& extrapolated);
 
 /// previous = u + r (u - u_old) + e + left_over: the predicted velocity takes the place of the oldest one.

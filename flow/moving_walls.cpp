@@ -53,7 +53,9 @@ KOKKOS_INLINE_FUNCTION Real swept_flux(const SolidSampler& solid, const FaceVect
 }  // namespace
 
 void build_body_faces(int c, const SolidSampler& solid, const FaceVector<OpenFraction>& open,
-                      const RegionList& regions, const Array<Index>& scratch, BodyFaces& faces) {
+                      const DomainSides& sides, const RegionList& regions, const Array<Index>& scratch,
+                      BodyFaces& faces) {
+  const DomainSides box = sides;
   const RegionView region = regions.view();
   const FaceVector<OpenFraction> fraction = open;
   const Layout layout = open.x.layout();
@@ -61,7 +63,9 @@ void build_body_faces(int c, const SolidSampler& solid, const FaceVector<OpenFra
   const Index kept = enumerate(
       "flow::build_body_faces.count", total, scratch, KOKKOS_LAMBDA(Index n) {
         const RegionCell cell = region.cell(n);
-        return cell.unique && fraction[c][layout(cell.i, cell.j, cell.k)] == 0;
+        const int along = c == 0 ? cell.i : (c == 1 ? cell.j : cell.k);
+        return cell.unique && fraction[c][layout(cell.i, cell.j, cell.k)] == 0 &&
+               !box.is_side(c, along, layout.cells);
       });
   faces.count = kept;
   faces.reserve(kept);
@@ -115,8 +119,9 @@ void refresh_body_faces(int c, const SolidSampler& solid, const BodyFaces& faces
 }
 
 void refresh_cut_cells(const SolidSampler& solid, const FaceVector<OpenFraction>& open,
-                       const CutCells& cells) {
+                       const DomainSides& sides, const CutCells& cells) {
   const CutCells target = cells;
+  const DomainSides box = sides;
   const SolidSampler sampler = solid;
   const FaceVector<OpenFraction> fraction = open;
   for_each(
@@ -125,8 +130,11 @@ void refresh_cut_cells(const SolidSampler& solid, const FaceVector<OpenFraction>
         const int i = cell[0], j = cell[1], k = cell[2];
         Real flux = 0;
         for (int a = 0; a < 3; ++a) {
-          const Real high = swept_flux(sampler, fraction, a, i + (a == 0), j + (a == 1), k + (a == 2));
-          const Real low = swept_flux(sampler, fraction, a, i, j, k);
+          const Real high = box.is_side(a, cell[a] + 1, sampler.grid.cells)
+                                ? 0.0
+                                : swept_flux(sampler, fraction, a, i + (a == 0), j + (a == 1), k + (a == 2));
+          const Real low =
+              box.is_side(a, cell[a], sampler.grid.cells) ? 0.0 : swept_flux(sampler, fraction, a, i, j, k);
           flux += (high - low) / sampler.grid.spacing[a];
         }
         target.wall_flux(n) = flux;

@@ -2,7 +2,7 @@
 // What moving bodies impose on the grid: velocities of the faces inside them, and the volume that their
 // surfaces sweep out of cut cells.
 #include "core/field.hpp"
-#include "flow/open_fraction.hpp"
+#include "flow/domain_sides.hpp"
 #include "flow/region_list.hpp"
 #include "flow/solid_sampler.hpp"
 
@@ -30,14 +30,15 @@ struct CutCells {
 };
 
 void build_body_faces(int c, const SolidSampler& solid, const FaceVector<OpenFraction>& open,
-                      const RegionList& regions, const Array<Index>& scratch, BodyFaces& faces);
+                      const DomainSides& sides, const RegionList& regions, const Array<Index>& scratch,
+                      BodyFaces& faces);
 void build_cut_cells(const FaceVector<OpenFraction>& open, const RegionList& regions,
                      const Array<Index>& scratch, CutCells& cells);
 
 /// Recompute velocities and fluxes from the present motion of the bodies.
 void refresh_body_faces(int c, const SolidSampler& solid, const BodyFaces& faces);
 void refresh_cut_cells(const SolidSampler& solid, const FaceVector<OpenFraction>& open,
-                       const CutCells& cells);
+                       const DomainSides& sides, const CutCells& cells);
 
 /// velocity[face] = velocity of the body there.
 void impose_body_velocity(const BodyFaces& faces, const Field<Real>& velocity);

@@ -88,11 +88,29 @@ struct Projection {
   }
 };
 
+/// velocity -= grad phi on the faces of the high side along axis.
+void project_high_side(int axis, const Grid& grid, const Field<OpenFraction>& open,
+                       const Field<Real>& potential, const Field<Real>& velocity) {
+  Box faces{{0, 0, 0}, grid.cells};
+  faces.low[axis] = grid.cells[axis];
+  faces.high[axis] = grid.cells[axis] + 1;
+  const Field<OpenFraction> fraction = open;
+  const Field<Real> phi = potential, u = velocity;
+  const Real inverse = 1 / grid.spacing[axis];
+  const Index step = potential.layout().stride(axis);
+  for_each_cell(
+      "flow::project_high_side", faces, KOKKOS_LAMBDA(int i, int j, int k) {
+        const Index n = u.layout()(i, j, k);
+        u[n] = fraction[n] ? u[n] - inverse * (phi[n] - phi[n - step]) : 0.0;
+      });
+}
+
 }  // namespace
 
 Real compute_divergence(const Grid& grid, const SweepPlan& plan, const RowRanges& rows,
                         const FaceVector<OpenFraction>& open, const CutCells& cut_cells,
-                        const FaceVector<Real>& velocity, const Field<Real>& divergence) {
+                        const DomainSides& sides, const Field<Real>& sdf, const FaceVector<Real>& velocity,
+                        const Field<Real>& divergence) {
   Divergence body{divergence.layout(), open.x.data(),     open.y.data(),     open.z.data(), velocity.x.data(),
                   velocity.y.data(),   velocity.z.data(), divergence.data(), Real3{0, 0, 0}};
   for (int a = 0; a < 3; ++a) body.scale[a] = open_fraction_unit / grid.spacing[a];
@@ -105,12 +123,13 @@ Real compute_divergence(const Grid& grid, const SweepPlan& plan, const RowRanges
         result[cut.cell(n)] = sum;
         return Kokkos::abs(sum);
       });
-  return std::max(norms.largest, at_walls);
+  return std::max({norms.largest, at_walls, add_side_flux(grid, sides, sdf, divergence)});
 }
 
 void apply_projection(const Grid& grid, const SweepPlan& plan, const RowRanges& rows,
-                      const FaceVector<OpenFraction>& open, const ProjectionUpdate& update,
-                      const FaceVector<Real>& velocity, const Field<Real>& pressure) {
+                      const FaceVector<OpenFraction>& open, const DomainSides& sides,
+                      const ProjectionUpdate& update, const FaceVector<Real>& velocity,
+                      const Field<Real>& pressure) {
   const Projection body{pressure.layout(),
                         open.x.data(),
                         open.y.data(),
@@ -125,6 +144,9 @@ void apply_projection(const Grid& grid, const SweepPlan& plan, const RowRanges& 
                         update.density_over_time_step,
                         update.implicit_viscosity};
   sweep("flow::apply_projection", plan, Stage{rows, body});
+  for (int axis = 0; axis < 3; ++axis)
+    if (sides.side[axis][1].kind == SideKind::Outflow)
+      project_high_side(axis, grid, open[axis], update.potential, velocity[axis]);
 }
 
 }  // namespace peclet::flow

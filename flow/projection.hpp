@@ -4,15 +4,18 @@
 // find phi with  div(o grad phi) = div F(u*)  in every open cell; then u = u* - grad phi has div F(u) = 0.
 #include "core/field.hpp"
 #include "core/sweep.hpp"
+#include "flow/domain_sides.hpp"
 #include "flow/moving_walls.hpp"
 #include "flow/open_fraction.hpp"
 
 namespace peclet::flow {
 
-/// divergence = div F(velocity), velocity ghosts filled; returns its largest magnitude.
+/// divergence = div F(velocity), velocity ghosts filled; returns its largest magnitude. sdf tells which faces
+/// of the sides of the box are beside fluid.
 Real compute_divergence(const Grid& grid, const SweepPlan& plan, const RowRanges& rows,
                         const FaceVector<OpenFraction>& open, const CutCells& cut_cells,
-                        const FaceVector<Real>& velocity, const Field<Real>& divergence);
+                        const DomainSides& sides, const Field<Real>& sdf, const FaceVector<Real>& velocity,
+                        const Field<Real>& divergence);
 
 /// What the pressure correction phi changes.
 struct ProjectionUpdate {
@@ -22,10 +25,11 @@ struct ProjectionUpdate {
   Field<Real> divergence;       // of the predicted velocity
 };
 
-/// velocity -= grad phi on open faces, zero on closed ones, and the rotational pressure update
-/// [TimmermansMinevVanDeVosse1996]  p += rho / dt phi - theta mu div F(u*).
+/// velocity -= grad phi on open faces (those on high Outflow sides included), zero on closed ones, and the
+/// rotational pressure update [TimmermansMinevVanDeVosse1996]  p += rho / dt phi - theta mu div F(u*).
 void apply_projection(const Grid& grid, const SweepPlan& plan, const RowRanges& rows,
-                      const FaceVector<OpenFraction>& open, const ProjectionUpdate& update,
-                      const FaceVector<Real>& velocity, const Field<Real>& pressure);
+                      const FaceVector<OpenFraction>& open, const DomainSides& sides,
+                      const ProjectionUpdate& update, const FaceVector<Real>& velocity,
+                      const Field<Real>& pressure);
 
 }  // namespace peclet::flow

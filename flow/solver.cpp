@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "core/error.hpp"
-#include "core/halo.hpp"
 #include "flow/diagnostics.hpp"
 #include "flow/projection.hpp"
 
@@ -42,7 +41,7 @@ Real smallest_spacing(const Grid& grid) {
 
 Solver::Solver(const Grid& grid)
     : grid_(grid),
-      boundary_(grid, periodic_),
+      boundary_(grid, sides_),
       velocity_("flow::velocity", Layout(grid.cells)),
       previous_("flow::previous_velocity", Layout(grid.cells)),
       extrapolated_("flow::extrapolated_velocity", Layout(grid.cells)),
@@ -56,7 +55,7 @@ Solver::Solver(const Grid& grid)
 void Solver::change_settings(const Settings& settings) { settings_ = settings; }
 
 void Solver::set_scene(const Scene& scene, bool periodic_images) {
-  bodies_ = Bodies(scene, grid_, periodic_images, periodic_);
+  bodies_ = Bodies(scene, grid_, periodic_images, sides_.periodicity());
   requested_poses_.assign(static_cast<std::size_t>(bodies_.count()), std::nullopt);
   loads_.clear();
   geometry_stale_ = true;
@@ -65,12 +64,13 @@ void Solver::set_scene(const Scene& scene, bool periodic_images) {
 
 void Solver::set_sampled_solid(const Field<Real>& distance) {
   samples_ = distance;
-  fill_periodic_ghosts(samples_, periodic_);
   build_geometry(false);
 }
 
 void Solver::build_geometry(bool keep_flow) {
+  take_requested_sides();
   take_requested_poses();
+  if (samples_.is_allocated()) fill_mirrored_ghosts(samples_, sides_);
   boundary_.build(bodies_, samples_);
   geometry_rebuilt();
   if (!keep_flow) {
@@ -94,12 +94,19 @@ void Solver::take_requested_poses() {
 
 void Solver::geometry_rebuilt() {
   pressure_solver_.set_open_fractions(boundary_.open(), boundary_.rows());
-  plan_ = SweepPlan(grid_.cells, boundary_.rows().box, periodic_.axis);
+  const Periodicity periodic = sides_.periodicity();
+  plan_ = SweepPlan(grid_.cells, boundary_.rows().box, periodic.axis);
+  for (int c = 0; c < 3; ++c) {
+    velocity_rows_[c] = velocity_rows(boundary_.rows(), sides_, grid_.cells, c);
+    velocity_plan_[c] = SweepPlan(grid_.cells, velocity_rows_[c].box, periodic.axis);
+  }
 }
 
 void Solver::velocity_changed() {
   if (!built_) return;
   mask_closed_faces(RowRanges(grid_.cells), boundary_.open(), velocity_);
+  fill_outflow_points(velocity_, sides_);
+  fill_velocity(velocity_, 1);
   for (int c = 0; c < 3; ++c) Kokkos::deep_copy(previous_[c].array(), velocity_[c].array());
   previous_time_step_ = 0;
   impose_body_motion();
@@ -110,6 +117,28 @@ void Solver::impose_body_motion() {
     impose_body_velocity(boundary_.body_faces(c), velocity_[c]);
     impose_body_velocity(boundary_.body_faces(c), previous_[c]);
   }
+}
+
+void Solver::fill_velocity(const FaceVector<Real>& velocity, int width) const {
+  for (int c = 0; c < 3; ++c) fill_velocity_ghosts(velocity, c, sides_, width);
+}
+
+void Solver::set_side(int axis, int high, const DomainSide& side) {
+  requested_sides_.side[axis][high] = side;
+  sides_stale_ = true;
+}
+
+void Solver::take_requested_sides() {
+  if (!sides_stale_) return;
+  requested_sides_.require_pairs();
+  if (!requested_sides_.same_kinds(sides_)) {
+    boundary_ = ImmersedBoundary(grid_, requested_sides_);
+    pressure_solver_ = PressureSolver(grid_, requested_sides_.pressure_sides());
+    bodies_.set_domain(requested_sides_.periodicity());
+    built_ = false;
+  }
+  sides_ = requested_sides_;
+  sides_stale_ = false;
 }
 
 void Solver::set_pose(int body, Vec3 translation, Quaternion rotation) {
@@ -138,6 +167,7 @@ void Solver::promote_moved_bodies() {
 void Solver::update_geometry() {
   times_.geometry = 0;
   const Stopwatch watch(times_.geometry);
+  take_requested_sides();
   promote_moved_bodies();
   if (!built_) return build_geometry(true);
   // faces about to be uncovered take the velocity of the body that covers them
@@ -178,20 +208,19 @@ MomentumTerms Solver::momentum_terms() const {
 }
 
 void Solver::step() {
-  if (geometry_stale_) update_geometry();
+  take_requested_sides();
+  if (geometry_stale_ || !built_) update_geometry();
   if (wall_velocity_stale_) refresh_wall_velocity();
   const double geometry_time = times_.geometry;
   times_ = {};
   times_.geometry = geometry_time;
 
   MomentumTerms terms = momentum_terms();
-  const Real velocity_scale =
-      extrapolate_velocity(plan_, boundary_.rows(), velocity_, previous_, terms.step_ratio, extrapolated_);
-  for (int c = 0; c < 3; ++c) {
-    impose_body_velocity(boundary_.body_faces(c), extrapolated_[c]);
-    fill_periodic_ghosts(extrapolated_[c], periodic_);
-  }
-  fill_periodic_ghosts(pressure_, periodic_, 1);
+  const Real velocity_scale = extrapolate_velocity(velocity_plan_, velocity_rows_, velocity_, previous_,
+                                                   terms.step_ratio, extrapolated_);
+  for (int c = 0; c < 3; ++c) impose_body_velocity(boundary_.body_faces(c), extrapolated_[c]);
+  fill_velocity(extrapolated_, 2);
+  fill_pressure_ghosts(pressure_, sides_);
 
   return_advective_leak(terms);
 
@@ -199,6 +228,7 @@ void Solver::step() {
   std::swap(velocity_, previous_);  // velocity_ is now the predicted one
   project_velocity(velocity_scale, terms.implicit_weight);
   impose_body_motion();
+  fill_velocity(velocity_, 1);
 
   previous_time_step_ = settings_.time_step;
   time_ += settings_.time_step;
@@ -220,44 +250,47 @@ void Solver::predict_velocity(const MomentumTerms& terms, Real velocity_scale) {
     const WallRows &fixed_rows = boundary_.fixed_rows(c), &moving_rows = boundary_.moving_rows(c);
     const Field<Real>& correction = divergence_;  // free until the projection
     ViscousSystem system{grid_,
+                         sides_,
+                         c,
                          terms.implicit_weight * terms.time_step * terms.kinematic_viscosity,
-                         &plan_,
-                         boundary_.rows(),
+                         &velocity_plan_[c],
+                         velocity_rows_[c],
                          boundary_.open()[c],
                          fixed_rows,
                          moving_rows};
     {
       const Stopwatch watch(times_.momentum);
-      compute_momentum_residual(c, terms, plan_, boundary_.rows(), fixed_rows, moving_rows, residual_);
+      compute_momentum_residual(c, terms, velocity_plan_[c], velocity_rows_[c], fixed_rows, moving_rows,
+                                residual_);
     }
     Real left_over = 0;
     {
       const Stopwatch watch(times_.viscous);
       const SolverReport report =
-          viscous_solver_.solve(system, periodic_, residual_, correction, settings_.velocity_tolerance,
-                                velocity_scale, settings_.velocity_iteration_limit, left_over);
+          viscous_solver_.solve(system, residual_, correction, settings_.velocity_tolerance, velocity_scale,
+                                settings_.velocity_iteration_limit, left_over);
       require_state(
           std::isfinite(left_over),
           "step(): the momentum solve met a value that is not finite; the time step may be too large");
       velocity_report_.iterations = std::max(velocity_report_.iterations, report.iterations);
       velocity_report_.residual = std::max(velocity_report_.residual, report.residual);
       velocity_report_.converged = velocity_report_.converged && report.converged;
-      fill_periodic_ghosts(correction, periodic_, 1);
+      fill_correction_ghosts(correction, c, sides_);
       const Stopwatch load_watch(times_.loads);
       load_collector_.add_momentum(c, terms, boundary_.solid(), fixed_rows, moving_rows, correction);
     }
-    apply_correction(plan_, boundary_.rows(), terms.step_ratio, velocity_[c], correction,
+    apply_correction(velocity_plan_[c], velocity_rows_[c], terms.step_ratio, velocity_[c], correction,
                      left_over == 0 ? 0 : left_over / fluid_points(c), previous_[c]);
   }
 }
 
 void Solver::project_velocity(Real velocity_scale, Real implicit_weight) {
-  for (int c = 0; c < 3; ++c) {
-    impose_body_velocity(boundary_.body_faces(c), velocity_[c]);
-    fill_periodic_ghosts(velocity_[c], periodic_, 1);
-  }
-  const Real largest = compute_divergence(grid_, plan_, boundary_.rows(), boundary_.open(),
-                                          boundary_.cut_cells(), velocity_, divergence_);
+  for (int c = 0; c < 3; ++c) impose_body_velocity(boundary_.body_faces(c), velocity_[c]);
+  fill_velocity(velocity_, 1);
+  require_balanced_inflow(velocity_scale);
+  const Real largest =
+      compute_divergence(grid_, plan_, boundary_.rows(), boundary_.open(), boundary_.cut_cells(), sides_,
+                         boundary_.solid().sdf, velocity_, divergence_);
   {
     const Stopwatch watch(times_.pressure);
     const Real scale = std::max(velocity_scale / smallest_spacing(grid_), largest);
@@ -274,9 +307,9 @@ void Solver::project_velocity(Real velocity_scale, Real implicit_weight) {
   }
   const ProjectionUpdate update{settings_.density / settings_.time_step,
                                 implicit_weight * settings_.viscosity, potential_, divergence_};
-  apply_projection(grid_, plan_, boundary_.rows(), boundary_.open(), update, velocity_, pressure_);
-  fill_periodic_ghosts(pressure_, periodic_, 1);
-  fill_periodic_ghosts(divergence_, periodic_, 1);
+  apply_projection(grid_, plan_, boundary_.rows(), boundary_.open(), sides_, update, velocity_, pressure_);
+  fill_pressure_ghosts(pressure_, sides_);
+  fill_pressure_ghosts(divergence_, sides_);
   {
     const Stopwatch watch(times_.loads);
     std::vector<Vec3> spin_resistance(static_cast<std::size_t>(bodies_.count()));
@@ -299,22 +332,39 @@ const std::vector<BodyLoad>& Solver::loads() const {
 }
 
 Real Solver::largest_open_divergence() {
-  if (geometry_stale_) update_geometry();
-  for (int c = 0; c < 3; ++c) fill_periodic_ghosts(velocity_[c], periodic_, 1);
-  compute_divergence(grid_, plan_, boundary_.rows(), boundary_.open(), boundary_.cut_cells(), velocity_,
-                     divergence_);
+  take_requested_sides();
+  if (geometry_stale_ || !built_) update_geometry();
+  fill_velocity(velocity_, 1);
+  compute_divergence(grid_, plan_, boundary_.rows(), boundary_.open(), boundary_.cut_cells(), sides_,
+                     boundary_.solid().sdf, velocity_, divergence_);
   return divergence_in_open_cells(boundary_.rows(), boundary_.open(), divergence_);
 }
 
-Real Solver::fluid_points(int c) const { return count_open_faces(boundary_.rows(), boundary_.open()[c]); }
+Real Solver::fluid_points(int c) const { return count_open_faces(velocity_rows_[c], boundary_.open()[c]); }
 
 Vec3 Solver::momentum_change() const {
   require_state(previous_time_step_ > 0, "momentum_change(): call step() first");
   const Real scale = settings_.density * grid_.cell_volume() / previous_time_step_;
   Vec3 change;
   for (int c = 0; c < 3; ++c)
-    change[c] = scale * sum_of_change(boundary_.rows(), boundary_.open()[c], velocity_[c], previous_[c]);
+    change[c] = scale * sum_of_change(velocity_rows_[c], boundary_.open()[c], velocity_[c], previous_[c]);
   return change;
+}
+
+Real Solver::courant_number() const {
+  return settings_.time_step * largest_courant_rate(boundary_.rows(), velocity_, grid_.spacing);
+}
+
+void Solver::require_balanced_inflow(Real velocity_scale) const {
+  if (!sides_.any(SideKind::Inflow) || sides_.any(SideKind::Outflow)) return;
+  const Real net = net_inflow(grid_, sides_, boundary_.solid().sdf);
+  const Real largest_area = grid_.cell_volume() * static_cast<Real>(grid_.number_of_cells()) /
+                            std::min({grid_.extent(0), grid_.extent(1), grid_.extent(2)});
+  constexpr Real rounding = 1e-10;
+  require_state(
+      std::abs(net) <= rounding * velocity_scale * largest_area,
+      "step(): expected an outflow side, or inflows that balance each other, found a net inflow of " +
+          std::to_string(net));
 }
 
 Real Solver::largest_velocity() const { return largest_component(boundary_.rows(), velocity_); }

@@ -8,6 +8,7 @@
 
 #include "flow/bodies.hpp"
 #include "flow/body_loads.hpp"
+#include "flow/domain_sides.hpp"
 #include "flow/immersed_boundary.hpp"
 #include "flow/momentum.hpp"
 #include "flow/pressure_solver.hpp"
@@ -28,6 +29,10 @@ class Solver {
   const Grid& grid() const { return grid_; }
   const Settings& settings() const { return settings_; }
   void change_settings(const Settings& settings);
+
+  // sides of the box, all periodic at first
+  void set_side(int axis, int high, const DomainSide& side);
+  const DomainSides& requested_sides() const { return requested_sides_; }
 
   // geometry
   void set_scene(const Scene& scene, bool periodic_images);
@@ -52,6 +57,8 @@ class Solver {
   const SolverReport& pressure_report() const { return pressure_report_; }
   const StepTimes& times() const { return times_; }
   Real largest_open_divergence();
+  /// Largest over the cells of dt sum_a |u_a| / h_a.
+  Real courant_number() const;
   Real largest_velocity() const;
   /// Density / dt times the velocity change in the last step, summed over fluid faces, times the cell volume.
   Vec3 momentum_change() const;
@@ -75,19 +82,24 @@ class Solver {
   void predict_velocity(const MomentumTerms& terms, Real velocity_scale);
   void project_velocity(Real velocity_scale, Real implicit_weight);
   void impose_body_motion();
+  void take_requested_sides();
+  void require_balanced_inflow(Real velocity_scale) const;
+  void fill_velocity(const FaceVector<Real>& velocity, int width) const;
   void take_requested_poses();
   void promote_moved_bodies();
   void geometry_rebuilt();
   MomentumTerms momentum_terms() const;
 
   Grid grid_;
-  Periodicity periodic_;
+  DomainSides sides_, requested_sides_;
   Settings settings_;
   Bodies bodies_;
   std::vector<std::optional<Pose>> requested_poses_;
   ImmersedBoundary boundary_;
   SweepPlan plan_;
-  bool geometry_stale_ = true, wall_velocity_stale_ = false, built_ = false;
+  RowRanges velocity_rows_[3];  // points of each component
+  SweepPlan velocity_plan_[3];
+  bool geometry_stale_ = true, sides_stale_ = false, wall_velocity_stale_ = false, built_ = false;
 
   FaceVector<Real> velocity_, previous_, extrapolated_;
   Field<Real> pressure_, potential_, divergence_, residual_, samples_;

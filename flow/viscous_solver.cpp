@@ -4,8 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/halo.hpp"
-
 namespace peclet::flow {
 namespace {
 
@@ -201,17 +199,32 @@ void correct_residual_at_walls(const ViscousSystem& system, const WallRows& rows
       });
 }
 
-/// Sweeps needed by Chebyshev iteration for a reduction: 1 / T_m(1 / s) <= reduction.
-int chebyshev_sweeps(Real s, Real reduction) {
-  if (s <= 0) return 1;
-  return std::max(1, static_cast<int>(std::ceil(std::acosh(1 / reduction) / std::acosh(1 / s))));
+Spectrum bound_spectrum(const ViscousSystem& system) {
+  Real regular = 0, walled = 0;  // sums of the off-diagonal part
+  for (int a = 0; a < 3; ++a) {
+    const Real along = 2 * system.diffusion / (system.grid.spacing[a] * system.grid.spacing[a]);
+    const bool at_wall = a != system.component && (system.sides.side[a][0].prescribes_velocity() ||
+                                                   system.sides.side[a][1].prescribes_velocity());
+    regular += along;
+    walled += at_wall ? 8.0 / 3 * along : 2 * along;
+  }
+  const Real low = 1 / (1 + regular), high = (1 + walled) / (1 + regular);
+  return {0.5 * (low + high), 0.5 * (high - low)};
 }
 
-/// Weight of sweep m of n: inverse of a root of T_n on [1 - s, 1 + s], in an order that keeps intermediate
+/// Sweeps needed by Chebyshev iteration for a reduction: 1 / T_m(middle / half width) <= reduction.
+int chebyshev_sweeps(const Spectrum& spectrum, Real reduction) {
+  if (spectrum.half_width <= 0) return 1;
+  const Real per_sweep = std::acosh(spectrum.middle / spectrum.half_width);
+  return std::max(1, static_cast<int>(std::ceil(std::acosh(1 / reduction) / per_sweep)));
+}
+
+/// Weight of sweep m of n: inverse of a root of T_n on the spectrum, in an order that keeps intermediate
 /// iterates small (pairs from both ends).
-float chebyshev_weight(int m, int n, Real s) {
+float chebyshev_weight(int m, int n, const Spectrum& spectrum) {
   const int root = m % 2 == 0 ? m / 2 : n - 1 - m / 2;
-  return static_cast<float>(1 / (1 - s * std::cos(std::numbers::pi * (2 * root + 1) / (2.0 * n))));
+  const Real cosine = std::cos(std::numbers::pi * (2 * root + 1) / (2.0 * n));
+  return static_cast<float>(1 / (spectrum.middle - spectrum.half_width * cosine));
 }
 
 }  // namespace
@@ -221,15 +234,10 @@ ViscousSolver::ViscousSolver(const Layout& layout)
 
 std::size_t ViscousSolver::bytes() const { return 2 * sizeof(float) * iterate_.array().extent(0); }
 
-SolverReport ViscousSolver::solve(const ViscousSystem& system, const Periodicity& periodic,
-                                  const Field<Real>& residual, const Field<Real>& correction,
-                                  Real relative_tolerance, Real velocity_scale, int iteration_limit,
-                                  Real& residual_sum) {
-  Real spread = 0;  // b: sum of the off-diagonal part
-  for (int a = 0; a < 3; ++a)
-    spread += 2 * system.diffusion / (system.grid.spacing[a] * system.grid.spacing[a]);
-  const Real s = spread / (1 + spread);
-
+SolverReport ViscousSolver::solve(const ViscousSystem& system, const Field<Real>& residual,
+                                  const Field<Real>& correction, Real relative_tolerance, Real velocity_scale,
+                                  int iteration_limit, Real& residual_sum) {
+  const Spectrum spectrum = bound_spectrum(system);
   SolverReport report;
   Norms norms = residual_norms(system, residual);
   const Real scale = std::max(velocity_scale, norms.largest);
@@ -238,9 +246,9 @@ SolverReport ViscousSolver::solve(const ViscousSystem& system, const Periodicity
   while (is_first ||
          (norms.largest > tolerance && report.iterations < iteration_limit && std::isfinite(norms.sum))) {
     const Real wanted = norms.largest > 0 ? 0.5 * tolerance / norms.largest : 0.5;
-    const int sweeps = std::min({chebyshev_sweeps(s, std::clamp(wanted, cycle_reduction_limit, 0.5)),
+    const int sweeps = std::min({chebyshev_sweeps(spectrum, std::clamp(wanted, cycle_reduction_limit, 0.5)),
                                  sweeps_per_cycle_limit, iteration_limit - report.iterations});
-    run_sweeps(system, periodic, residual, sweeps, s);
+    run_sweeps(system, residual, sweeps, spectrum);
     const Accumulate body{residual.layout(), iterate_.data(),         residual.data(),
                           correction.data(), Diffusion<Real>(system), is_first};
     sweep("flow::viscous_residual", *system.plan, Stage{system.rows, body});
@@ -256,18 +264,18 @@ SolverReport ViscousSolver::solve(const ViscousSystem& system, const Periodicity
   return report;
 }
 
-void ViscousSolver::run_sweeps(const ViscousSystem& system, const Periodicity& periodic,
-                               const Field<Real>& residual, int sweeps, Real s) {
+void ViscousSolver::run_sweeps(const ViscousSystem& system, const Field<Real>& residual, int sweeps,
+                               const Spectrum& spectrum) {
   const Layout& layout = residual.layout();
   const Diffusion<float> diffusion(system);
-  const float first = chebyshev_weight(0, sweeps, s);
+  const float first = chebyshev_weight(0, sweeps, spectrum);
   sweep("flow::viscous_start", *system.plan,
         Stage{system.rows, FirstSweep{layout, residual.data(), iterate_.data(), first / diffusion.diagonal}});
   start_wall_rows(system, system.fixed_rows, residual, first, iterate_);
   start_wall_rows(system, system.moving_rows, residual, first, iterate_);
   for (int m = 1; m < sweeps; ++m) {
-    const float weight = chebyshev_weight(m, sweeps, s);
-    fill_periodic_ghosts(iterate_, periodic, 1);
+    const float weight = chebyshev_weight(m, sweeps, spectrum);
+    fill_correction_ghosts(iterate_, system.component, system.sides);
     const Sweep body{layout,
                      residual.data(),
                      iterate_.data(),
@@ -280,7 +288,7 @@ void ViscousSolver::run_sweeps(const ViscousSystem& system, const Periodicity& p
     sweep_wall_rows(system, system.moving_rows, residual, weight, iterate_, next_);
     std::swap(iterate_, next_);
   }
-  fill_periodic_ghosts(iterate_, periodic, 1);
+  fill_correction_ghosts(iterate_, system.component, system.sides);
 }
 
 }  // namespace peclet::flow

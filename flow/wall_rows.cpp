@@ -18,11 +18,13 @@ namespace {
 
 /// Weights and owners of the row of component c at the low face of cell (i, j, k).
 KOKKOS_INLINE_FUNCTION void fill_row(const WallRows& rows, Index row, int c, const SolidSampler& solid,
-                                     const FaceVector<OpenFraction>& open, const RegionCell& cell) {
+                                     const FaceVector<OpenFraction>& open, const DomainSides& sides,
+                                     const RegionCell& cell) {
   const Layout& layout = open.x.layout();
   const Index p = layout(cell.i, cell.j, cell.k);
   const Vec3 x = solid.grid.face_center(c, cell.i, cell.j, cell.k);
   const int nearest = nearest_owner(solid, c, p, x);
+  const int at[3] = {cell.i, cell.j, cell.k};
   int walls = 0;
   for (int a = 0; a < 3; ++a) {
     Real distance[2];
@@ -31,7 +33,7 @@ KOKKOS_INLINE_FUNCTION void fill_row(const WallRows& rows, Index row, int c, con
       const Index q = p + (s ? layout.stride(a) : -layout.stride(a));
       distance[s] = 1;
       rows.owner(row, d) = nearest;
-      if (open[c][q] != 0) continue;
+      if (open[c][q] != 0 || (a == c && sides.is_side(a, at[a] + (s ? 1 : -1), layout.cells))) continue;
       walls |= 1 << d;
       Vec3 y = x;
       y[a] += (s ? 1 : -1) * solid.grid.spacing[a];
@@ -52,15 +54,17 @@ KOKKOS_INLINE_FUNCTION void fill_row(const WallRows& rows, Index row, int c, con
 }  // namespace
 
 void build_wall_rows(int c, const SolidSampler& solid, const FaceVector<OpenFraction>& open,
-                     const RegionList& regions, const Array<Index>& scratch, WallRows& rows) {
+                     const DomainSides& sides, const RegionList& regions, const Array<Index>& scratch,
+                     WallRows& rows) {
   const RegionView region = regions.view();
   const FaceVector<OpenFraction> fraction = open;
   const Layout layout = open.x.layout();
+  const DomainSides box = sides;
   rows.count = enumerate(
       "flow::build_wall_rows.count", regions.number_of_cells(), scratch, KOKKOS_LAMBDA(Index n) {
         const RegionCell cell = region.cell(n);
         const Index p = layout(cell.i, cell.j, cell.k);
-        return cell.unique && fraction[c][p] != 0 && touches_wall(fraction, c, p);
+        return cell.unique && fraction[c][p] != 0 && touches_wall(fraction, box, c, cell.i, cell.j, cell.k);
       });
   rows.reserve(rows.count);
   const WallRows target = rows;
@@ -71,7 +75,7 @@ void build_wall_rows(int c, const SolidSampler& solid, const FaceVector<OpenFrac
       "flow::build_wall_rows", total, KOKKOS_LAMBDA(Index n) {
         const Index row = scratch(n);
         const bool is_kept = (n + 1 < total ? scratch(n + 1) : kept) > row;
-        if (is_kept) fill_row(target, row, c, sampler, fraction, region.cell(n));
+        if (is_kept) fill_row(target, row, c, sampler, fraction, box, region.cell(n));
       });
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // Velocity points whose stencil touches a wall: a compact list beside the regular grid sweep.
 #include "core/field.hpp"
+#include "flow/domain_sides.hpp"
 #include "flow/open_fraction.hpp"
 #include "flow/region_list.hpp"
 #include "flow/solid_sampler.hpp"
@@ -54,27 +55,35 @@ KOKKOS_INLINE_FUNCTION Int3 cell_of(const Layout& layout, Index n) {
   return {static_cast<int>(m - k * layout.pitch_z - j * layout.pitch_y), j, k};
 }
 
-/// True where the stencil of component c at fluid face p touches a wall: a neighbouring point is solid, or
-/// a face that carries mass through its control volume is partly closed.
-KOKKOS_INLINE_FUNCTION bool touches_wall(const FaceVector<OpenFraction>& open, int c, Index p) {
+/// True where the stencil of component c at the fluid face of cell (i, j, k) touches the wall of a body: a
+/// neighbouring point is solid, or a face that carries mass through its control volume is partly closed.
+/// Faces on the sides of the box are no walls of bodies: ghosts express them.
+KOKKOS_INLINE_FUNCTION bool touches_wall(const FaceVector<OpenFraction>& open, const DomainSides& sides,
+                                         int c, int i, int j, int k) {
   const Layout& layout = open.x.layout();
-  const Index own = layout.stride(c);
+  const Index p = layout(i, j, k), own = layout.stride(c);
+  const int at[3] = {i, j, k};
   bool touched = open[c][p] < fully_open;
   for (int a = 0; a < 3; ++a) {
     const Index step = layout.stride(a);
-    touched = touched || open[c][p - step] == 0 || open[c][p + step] == 0;
-    if (a == c)
-      touched = touched || open[c][p - step] < fully_open || open[c][p + step] < fully_open;
-    else
-      touched = touched || open[a][p] < fully_open || open[a][p - own] < fully_open ||
-                open[a][p + step] < fully_open || open[a][p + step - own] < fully_open;
+    const bool low_side = sides.is_side(a, a == c ? at[a] - 1 : at[a], layout.cells);
+    const bool high_side = sides.is_side(a, at[a] + 1, layout.cells);
+    if (a == c) {
+      touched = touched || (!low_side && open[c][p - step] < fully_open) ||
+                (!high_side && open[c][p + step] < fully_open);
+    } else {
+      touched = touched || open[c][p - step] == 0 || open[c][p + step] == 0;
+      touched = touched || (!low_side && (open[a][p] < fully_open || open[a][p - own] < fully_open)) ||
+                (!high_side && (open[a][p + step] < fully_open || open[a][p + step - own] < fully_open));
+    }
   }
   return touched;
 }
 
 /// Lists the rows of component c among the cells of the regions (or of the whole grid when regions is null).
 void build_wall_rows(int c, const SolidSampler& solid, const FaceVector<OpenFraction>& open,
-                     const RegionList& regions, const Array<Index>& scratch, WallRows& rows);
+                     const DomainSides& sides, const RegionList& regions, const Array<Index>& scratch,
+                     WallRows& rows);
 
 /// Recomputes wall_sum from the present velocities of the bodies.
 void refresh_wall_velocity(int c, const SolidSampler& solid, const WallRows& rows);
