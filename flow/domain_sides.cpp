@@ -55,7 +55,8 @@ struct SideGhosts {
     if (at.kind == SideKind::Outflow) {
       const T edge = q[first];
       const bool flows_back = !is_correction && (high ? edge < 0 : edge > 0);
-      for (int d = 1; d <= width - high; ++d) q[first - d * inward] = flows_back ? -edge : edge;
+      const int layers = high ? 1 : width;  // beyond the unknown point on the side
+      for (int d = 1; d <= layers; ++d) q[first - d * inward] = flows_back ? -edge : edge;
       return;
     }
     const T edge = at.prescribes_velocity() ? static_cast<T>(prescribed(at, cell)) : T(0);

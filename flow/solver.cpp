@@ -219,6 +219,8 @@ void Solver::step() {
   const Real velocity_scale = extrapolate_velocity(velocity_plan_, velocity_rows_, velocity_, previous_,
                                                    terms.step_ratio, extrapolated_);
   for (int c = 0; c < 3; ++c) impose_body_velocity(boundary_.body_faces(c), extrapolated_[c]);
+  courant_number_bound_ =
+      velocity_scale * terms.time_step * (1 / grid_.spacing[0] + 1 / grid_.spacing[1] + 1 / grid_.spacing[2]);
   fill_velocity(extrapolated_, 2);
   fill_pressure_ghosts(pressure_, sides_);
 

@@ -59,6 +59,8 @@ class Solver {
   Real largest_open_divergence();
   /// Largest over the cells of dt sum_a |u_a| / h_a.
   Real courant_number() const;
+  /// Not less than courant_number() was before the last step.
+  Real courant_number_bound() const { return courant_number_bound_; }
   Real largest_velocity() const;
   /// Density / dt times the velocity change in the last step, summed over fluid faces, times the cell volume.
   Vec3 momentum_change() const;
@@ -111,7 +113,7 @@ class Solver {
   StepTimes times_;
   double time_ = 0;
   long steps_ = 0;
-  Real previous_time_step_ = 0;
+  Real previous_time_step_ = 0, courant_number_bound_ = 0;
 };
 
 }  // namespace peclet::flow

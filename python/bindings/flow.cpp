@@ -87,8 +87,12 @@ nb::object velocity(const Solver& solver, int c) {
   std::vector<OpenFraction> open(result.size());
   copy_to_host(component(solver, c), result.data());
   copy_to_host(solver.open()[c], open.data());
+  const std::size_t steps[3] = {1, static_cast<std::size_t>(n[0]), static_cast<std::size_t>(n[0] * n[1])};
+  const auto is_on_side = [&](std::size_t i) {
+    return !solver.requested_sides().is_periodic(c) && i / steps[c] % static_cast<std::size_t>(n[c]) == 0;
+  };
   for (std::size_t i = 0; i < open.size(); ++i)
-    if (open[i] == 0) result[i] = 0;
+    if (open[i] == 0 && !is_on_side(i)) result[i] = 0;
   return result.release();
 }
 
@@ -197,6 +201,62 @@ void define_settings(nb::class_<Solver>& solver) {
           });
 }
 
+DomainSide& checked_side(DomainSides& sides, int axis, int high) {
+  require(axis >= 0 && axis < 3, "axis", "an axis 0, 1 or 2", axis);
+  require(high == 0 || high == 1, "high", "0 or 1", high);
+  return sides.side[axis][high];
+}
+
+void set_side_profile(Solver& solver, int axis, int high, nb::handle values) {
+  DomainSides sides = solver.requested_sides();
+  DomainSide& side = checked_side(sides, axis, high);
+  const Int3 n = solver.grid().cells;
+  side.kind = SideKind::Inflow;
+  side.size_s = n[axis == 0 ? 1 : 0];
+  side.size_t = n[axis == 2 ? 1 : 2];
+  const Input<double> profile(values, "profile", {side.size_s, side.size_t, 3}, python::Order::Fortran);
+  profile.require_finite();
+  const auto given = profile.values();
+  side.profile = Array<Real>("flow::side_profile", given.size());
+  const Kokkos::View<const double*, Kokkos::HostSpace, Kokkos::MemoryTraits<Kokkos::Unmanaged>> host(
+      given.data(), given.size());
+  Kokkos::deep_copy(side.profile, host);
+  const std::size_t faces = given.size() / 3;
+  for (std::size_t c = 0; c < 3; ++c) {
+    double sum = 0;
+    for (std::size_t m = 0; m < faces; ++m) sum += given[c * faces + m];
+    side.velocity[static_cast<int>(c)] = sum / static_cast<double>(faces);
+  }
+  solver.set_side(axis, high, side);
+}
+
+void define_sides(nb::class_<Solver>& solver) {
+  solver
+      .def(
+          "set_side",
+          [](Solver& s, int axis, int high, SideKind kind, nb::handle velocity) {
+            DomainSides sides = s.requested_sides();
+            DomainSide& side = checked_side(sides, axis, high);
+            side = DomainSide{};
+            side.kind = kind;
+            side.velocity = python::to_vec3(velocity, "velocity");
+            s.set_side(axis, high, side);
+          },
+          "axis"_a, "high"_a, "kind"_a, "velocity"_a)
+      .def("set_side_profile", &set_side_profile, "axis"_a, "high"_a, "profile"_a)
+      .def(
+          "side",
+          [](const Solver& s, int axis, int high) {
+            DomainSides sides = s.requested_sides();
+            const DomainSide& side = checked_side(sides, axis, high);
+            return std::make_tuple(side.kind,
+                                   std::array<double, 3>{side.velocity.x, side.velocity.y, side.velocity.z});
+          },
+          "axis"_a, "high"_a)
+      .def_prop_ro("courant_number", &Solver::courant_number)
+      .def_prop_ro("courant_number_bound", &Solver::courant_number_bound);
+}
+
 void define_geometry(nb::class_<Solver>& solver) {
   solver
       .def("set_scene", &set_scene, "node_ints"_a, "node_reals"_a, "instance_ints"_a, "instance_reals"_a,
@@ -288,6 +348,12 @@ NB_MODULE(_flow, m) {
       .value("SECOND_UPWIND", AdvectionScheme::SecondUpwind)
       .value("KOREN", AdvectionScheme::Koren)
       .value("CENTRAL", AdvectionScheme::Central);
+  nb::enum_<SideKind>(m, "SideKind")
+      .value("PERIODIC", SideKind::Periodic)
+      .value("WALL", SideKind::Wall)
+      .value("INFLOW", SideKind::Inflow)
+      .value("OUTFLOW", SideKind::Outflow)
+      .value("SLIP", SideKind::Slip);
   nb::class_<Solver> solver(m, "Solver");
   solver.def(
       "__init__",
@@ -295,6 +361,7 @@ NB_MODULE(_flow, m) {
          const std::array<double, 3>& origin) { new (self) Solver(make_grid(cells, spacing, origin)); },
       "cells"_a, "spacing"_a, "origin"_a);
   define_settings(solver);
+  define_sides(solver);
   define_geometry(solver);
   define_results(solver);
 }

@@ -18,7 +18,7 @@ _ABSENT = {
     "a collocated grid": r"[Cc]ollocated|[Cc]olocated|ghost_projection|face_interp",
     "variable fluid properties": r"propert|density_mode|rho_face|cell_force",
     "scalar transport": r"scalar",
-    "boundaries other than periodic ones": r"domain_bc|backflow|outflow|slip_",
+    "slip on bodies": r"slip_",
     "implicit advection": r"implicit_advection|deferred_correction",
     "distributed grids": r"decomposition|exchange_field|comm_avoiding",
     "fields shared without a copy (get_field and set_field copy)": r"field_view|add_field",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import math
 import os
 import warnings
 from collections.abc import Sequence
@@ -13,6 +14,7 @@ from numpy.typing import NDArray
 from peclet import _checks
 from peclet.flow import _flow
 from peclet.flow._base import Status
+from peclet.flow.boundaries import Boundaries
 from peclet.flow.diagnostics import Instruments, SolverDiagnostics, _warn_reaction
 from peclet.flow.fields import Fields
 from peclet.flow.geometry import Geometry
@@ -20,10 +22,12 @@ from peclet.flow.parameters import Parameters
 
 _LARGEST = 2**20  # cells along one axis
 _BYTES_PER_CELL = 200  # at least
+_COURANT_LIMIT = 1.0
 
 
-class Solver(Parameters, Geometry, Fields, Instruments):
-    """Incompressible flow in a periodic box, around fixed and moving bodies.
+class Solver(Parameters, Boundaries, Geometry, Fields, Instruments):
+    """Incompressible flow in a box, periodic unless set_domain_bc() says otherwise, around fixed and moving
+    bodies.
 
     ``Solver(nx, ny, nz)`` works in cell units: cells of size 1, the centre of cell (i, j, k) at (i, j, k).
 
@@ -148,10 +152,42 @@ class Solver(Parameters, Geometry, Fields, Instruments):
         self._status.has_loads = True
         self._status.has_budget = True
         core = self._core
+        if core.courant_number_bound > _COURANT_LIMIT and core.advection_scheme != _flow.AdvectionScheme.NONE:
+            _warn_courant(core.courant_number)
         if not self.velocity_report.converged:
             _warn_cap("velocity", core.velocity_iteration_limit, core.velocity_tolerance)
         if not self.pressure_report.converged:
             _warn_cap("pressure", core.pressure_iteration_limit, core.pressure_tolerance)
+
+    def step_adaptive(
+        self, cfl_target: float = 0.4, capillary_cfl: float = 0.4, dt_max: float = math.inf
+    ) -> float:
+        """Advance by a time step chosen from the velocity, and return it.
+
+        dt becomes cfl_target over the largest of sum |u_a| / h_a, at most dt_max and at most twice the last
+        one. With a fluid at rest, the present dt is kept if dt_max is infinite. capillary_cfl is accepted
+        from scripts: there is no surface tension here.
+        """
+        target = _checks.positive(cfl_target, "cfl_target")
+        _checks.positive(capillary_cfl, "capillary_cfl")
+        if dt_max != math.inf:
+            _checks.positive(dt_max, "dt_max")
+        rate = self._core.courant_number / self.dt
+        wanted = target / rate if rate > 0 else (self.dt if dt_max == math.inf else dt_max)
+        if self.number_of_steps > 0:
+            wanted = min(wanted, 2 * self.dt)
+        self.set_dt(min(wanted, dt_max))
+        self.step()
+        return self.dt
+
+    @property
+    def courant_number(self) -> float:
+        """Largest of dt sum |u_a| / h_a over the cells, with the present velocity and dt.
+
+        Advection is explicit: step() warns where this exceeds 1.
+        """
+        self._require_geometry()
+        return self._core.courant_number
 
     @property
     def time(self) -> float:
@@ -219,6 +255,16 @@ def _warn_cap(solve: str, cap: int, tolerance: float) -> None:
         RuntimeWarning,
         stacklevel=3,
     )
+
+
+def _warn_courant(number: float) -> None:
+    if number > _COURANT_LIMIT:
+        warnings.warn(
+            f"step(): advection is explicit and the Courant number {number:.2g} exceeds {_COURANT_LIMIT:g}; "
+            "reduce dt or use step_adaptive()",
+            RuntimeWarning,
+            stacklevel=3,
+        )
 
 
 def _cell_units(nx: Any, ny: Any, nz: Any) -> tuple[list[int], None, list[float]]:
