@@ -50,6 +50,15 @@ KOKKOS_INLINE_FUNCTION void apply_impulse(Body& body, Vec3 impulse, Vec3 arm, Re
   body.is_deflected = true;
 }
 
+/// A couple (an impulse of torque), at the time `remaining` before the end of the substep.
+KOKKOS_INLINE_FUNCTION void apply_couple(Body& body, Vec3 couple, Real remaining) {
+  if (is_immovable(body.inverse_mass, body.inverse_inertia)) return;
+  const Vec3 dw = inverse_inertia_times(body, couple);
+  body.angular_velocity += dw;
+  body.turn += remaining * dw;
+  body.is_deflected = true;
+}
+
 /// Move by push / mass, velocity unchanged.
 KOKKOS_INLINE_FUNCTION void displace(Body& body, Vec3 push) {
   if (body.inverse_mass > 0) body.position += body.inverse_mass * push;

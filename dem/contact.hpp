@@ -25,9 +25,14 @@ struct Contact {
   Real closed_length = 0;   // distance of the centres (of centre and wall) in the middle of that time
   Real normal_impulse = 0;  // of the force while closed, so far
   Vec3 tangential_impulse;  // of the friction on a while closed, so far
+  Vec3 rolling_couple;      // of the rolling resistance on a while closed, so far
   Vec3 impact_impulse;      // on a, by the impacts of this substep
 
   KOKKOS_INLINE_FUNCTION bool is_pair() const { return b >= 0; }
+  /// 1/R* = 1/R_a + 1/R_b
+  KOKKOS_INLINE_FUNCTION Real effective_radius() const {
+    return is_pair() ? share * (1 - share) * reach : reach;
+  }
 };
 
 /// The order in which contacts are visited: color after color, then the rest one by one. No two contacts of a

@@ -1,9 +1,9 @@
 #include "dem/contact_detection.hpp"
 
 #include <limits>
-#include <utility>
 
 #include "core/error.hpp"
+#include "dem/make_room.hpp"
 #include "dem/wall_features.hpp"
 
 namespace peclet::dem {
@@ -22,7 +22,7 @@ void compute_reaches(const ContactScene& scene, const Bodies& bodies) {
         const Real radius = radius_of(scene, n);
         const Real sweep =
             norm(bodies(n).velocity) * scene.dt + norm(bodies(n).acceleration) * scene.dt * scene.dt;
-        scene.reaches(n) = (1 + 0.5 * contact_margin) * radius + Kokkos::min(sweep, largest_sweep * radius);
+        scene.reaches(n) = (1 + 0.5 * scene.margin) * radius + Kokkos::min(sweep, largest_sweep * radius);
       });
 }
 
@@ -55,7 +55,7 @@ KOKKOS_INLINE_FUNCTION int wall_features(const ContactScene& scene, Index a, con
   const Real radius = radius_of(scene, a);
   const Vec3 x = scene.particles.position(a);
   const Real wall_speed = norm(velocity_at(wall.twist, wall.center, x));
-  const Real margin = 0.5 * contact_margin * radius;
+  const Real margin = 0.5 * scene.margin * radius;
   return scene.walls.features_near(
       wall, x, radius, scene.reaches(a) + margin + Kokkos::min(wall_speed * scene.dt, largest_sweep * radius),
       features);
@@ -77,10 +77,6 @@ KOKKOS_FUNCTION int collect_row(const ContactScene& scene, const CellList& cells
       if (count < room) row[count] = {static_cast<int>(a), -1 - w, k};
   }
   return count;
-}
-
-KOKKOS_INLINE_FUNCTION bool comes_before(const ContactKey& p, const ContactKey& q) {
-  return p.b != q.b ? p.b < q.b : p.image < q.image;
 }
 
 /// Let the key at parent sink in a heap of so many keys.
@@ -136,46 +132,6 @@ void fill_rows(const ContactScene& scene, const CellList& cells, const Array<Con
       });
 }
 
-/// The same pair seen from the other particle.
-KOKKOS_INLINE_FUNCTION int opposite_image(int image) {
-  const int turns_x = image / 65536 - 128, turns_y = image / 256 % 256 - 128, turns_z = image % 256 - 128;
-  return ((128 - turns_x) * 256 + 128 - turns_y) * 256 + 128 - turns_z;
-}
-
-/// Place of a key, or -1; by bisection of the sorted row.
-KOKKOS_INLINE_FUNCTION Index find_key(const ContactKeys& keys, const ContactKey& key) {
-  if (key.a >= keys.rows) return -1;
-  Index low = keys.row_begin(key.a), high = keys.row_begin(key.a + 1);
-  const Index end = high;
-  while (low < high) {
-    const Index middle = (low + high) / 2;
-    if (comes_before(keys.keys(middle), key))
-      low = middle + 1;
-    else
-      high = middle;
-  }
-  return low < end && !comes_before(key, keys.keys(low)) ? low : -1;
-}
-
-/// Which of a pair comes first may have changed since.
-KOKKOS_INLINE_FUNCTION void recall(const ContactHistory& history, const ContactKey& key, Contact& c) {
-  Index n = find_key(history.keys, key);
-  Real sign = 1;
-  if (n < 0 && key.b >= 0) {
-    n = find_key(history.keys, {key.b, key.a, opposite_image(key.image)});
-    sign = -1;
-  }
-  constexpr Real same_direction = 0.9;
-  if (n < 0 || sign * dot(history.normal(n), c.normal) < same_direction) return;
-  c.carried_force = history.force(n);
-  c.carried_friction = sign * history.friction(n);
-}
-
-KOKKOS_INLINE_FUNCTION Vec3 shift_of(const Domain& domain, int image) {
-  return {(image / 65536 - 128) * domain.extent.x, (image / 256 % 256 - 128) * domain.extent.y,
-          (image % 256 - 128) * domain.extent.z};
-}
-
 KOKKOS_INLINE_FUNCTION void set_pair(const ContactScene& scene, const ContactKey& key, Contact& c) {
   const Real radius_a = radius_of(scene, key.a), radius_b = radius_of(scene, key.b);
   c.offset = shift_of(scene.domain, key.image);
@@ -221,24 +177,6 @@ void write_contacts(const ContactScene& scene, const ContactKeys& keys, const Ar
       });
 }
 
-void write_history(Index count, const Array<Contact>& contacts, Real dt, const ContactHistory& history) {
-  for_each(
-      "dem::write_history", count, KOKKOS_LAMBDA(Index n) {
-        const Contact& c = contacts(n);
-        const Real rate = 1 / dt;
-        history.force(c.row_entry) = rate * c.normal_impulse;
-        history.friction(c.row_entry) = rate * c.tangential_impulse;
-        history.normal(c.row_entry) = c.normal;
-      });
-}
-
-/// Room for count entries, contents lost; some in reserve, so that a slowly growing number rarely allocates.
-template <class T>
-void make_room(Array<T>& array, const std::string& name, Index count) {
-  if (static_cast<Index>(array.extent(0)) < count)
-    array = Array<T>(name, static_cast<std::size_t>(count + count / 4));
-}
-
 }  // namespace
 
 void ContactFinder::find(ContactScene& scene, const Bodies& bodies, ContactKeys& keys) {
@@ -264,14 +202,6 @@ void build_contacts(const ContactScene& scene, const ContactKeys& keys, const Ar
                     const ContactHistory& history, Array<Contact>& contacts) {
   make_room(contacts, "dem.contacts", keys.count);
   write_contacts(scene, keys, place, history, contacts);
-}
-
-void record_history(ContactKeys& keys, const Array<Contact>& contacts, Real dt, ContactHistory& history) {
-  make_room(history.force, "dem.history_force", keys.count);
-  make_room(history.friction, "dem.history_friction", keys.count);
-  make_room(history.normal, "dem.history_normal", keys.count);
-  write_history(keys.count, contacts, dt, history);
-  std::swap(keys, history.keys);
 }
 
 }  // namespace peclet::dem

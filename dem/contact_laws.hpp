@@ -114,10 +114,45 @@ KOKKOS_INLINE_FUNCTION Vec3 slip_velocity(const Contact& c, const Bodies& bodies
   return u - dot(n, u) * n;
 }
 
+/// Part of the spin of a relative to b that rolls a over b.
+KOKKOS_INLINE_FUNCTION Vec3 rolling_spin(const Contact& c, const Bodies& bodies, Vec3 n) {
+  Vec3 w = bodies(c.a).angular_velocity;
+  if (c.is_pair()) w -= bodies(c.b).angular_velocity;
+  return w - dot(n, w) * n;
+}
+
+/// Change of the relative spin about the unit vector t per couple about t.
+KOKKOS_INLINE_FUNCTION Real rolling_mobility(const Contact& c, const Bodies& bodies, Vec3 t) {
+  Real mobility = dot(t, inverse_inertia_times(bodies(c.a), t));
+  if (c.is_pair()) mobility += dot(t, inverse_inertia_times(bodies(c.b), t));
+  return mobility;
+}
+
+KOKKOS_INLINE_FUNCTION void apply_couple_to_both(const Contact& c, const Bodies& bodies, Vec3 couple,
+                                                 Real remaining) {
+  apply_couple(bodies(c.a), couple, remaining);
+  if (c.is_pair()) apply_couple(bodies(c.b), -couple, remaining);
+}
+
 /// v scaled down to length limit, if it is longer.
 KOKKOS_INLINE_FUNCTION Vec3 limited(Vec3 v, Real limit) {
   const Real length = norm(v);
   return length > limit ? (limit / length) * v : v;
+}
+
+/// Stop the rolling as far as a couple of mu_r R* times the normal impulse can, given the couple so far.
+/// Returns the change of the speed at which the surfaces roll.
+KOKKOS_INLINE_FUNCTION Real resist_rolling(const Contact& c, const Bodies& bodies, Vec3 n, Real normal,
+                                           Real remaining, Vec3& couple) {
+  const Vec3 spin = rolling_spin(c, bodies, n);
+  const Real speed = norm(spin);
+  const Real mobility = speed > 0 ? rolling_mobility(c, bodies, spin / speed) : 0;
+  const Vec3 wanted = mobility > 0 ? couple - spin / mobility : couple;
+  const Vec3 allowed = limited(wanted, c.material.rolling_friction * c.effective_radius() * normal);
+  const Vec3 change = allowed - couple;
+  couple = allowed;
+  apply_couple_to_both(c, bodies, change, remaining);
+  return mobility * norm(change) * c.effective_radius();
 }
 
 /// What counts as an impact; slower contacts are left to the sustained force.
@@ -161,6 +196,10 @@ KOKKOS_INLINE_FUNCTION bool resolve_impact(Contact& c, const Bodies& bodies, con
     }
   }
   apply_to_both(c, bodies, impulse, arms, s);
+  if (c.material.rolling_friction > 0) {
+    Vec3 couple;
+    resist_rolling(c, bodies, n, normal, s, couple);
+  }
   c.normal = n;
   c.closed_time = s;
   c.impact_impulse += impulse;
@@ -232,6 +271,8 @@ KOKKOS_INLINE_FUNCTION Real update_sustained_force(Contact& c, const Bodies& bod
     c.tangential_impulse = friction;
   }
   if (response > 0) apply_to_both(c, bodies, change, arms, 0.5 * c.closed_time);
+  if (c.material.rolling_friction > 0)
+    response += resist_rolling(c, bodies, n, normal, 0.5 * c.closed_time, c.rolling_couple);
   return response;
 }
 

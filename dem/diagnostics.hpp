@@ -15,7 +15,8 @@ struct ContactRecord {
   Real gap = 0;      // at the start of the substep
 };
 
-/// Contacts of the last substep, within its margin; open ones have no impulse.
+/// Contacts of the last substep. Of step: all within its margin, open ones without an impulse. Of step_hertz:
+/// the closed ones, with the gap in the middle of the substep.
 std::vector<ContactRecord> contact_records(const Simulation& simulation);
 
 /// Pairs of contacts of one color that share a movable particle (none, if all is well), and the number of

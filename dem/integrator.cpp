@@ -34,14 +34,27 @@ KOKKOS_INLINE_FUNCTION void rotate_freely(Body& body, Vec3 spin, Quaternion q, V
 }
 
 /// x + v dt + a dt^2 / 2, v + a dt; a fixed body has no acceleration.
-KOKKOS_INLINE_FUNCTION Body predicted(const ParticleArrays& p, Index n, Vec3 gravity, Real dt) {
+KOKKOS_INLINE_FUNCTION Body predicted(const ParticleArrays& p, Index n, Vec3 gravity, Vec3 force, Vec3 torque,
+                                      Real dt) {
+  Body body;
+  body.inverse_mass = p.inverse_mass(n);
+  body.inverse_inertia = p.inverse_inertia(n);
+  if (body.inverse_mass > 0) body.acceleration = gravity + body.inverse_mass * force;
+  body.position = p.position(n) + dt * p.velocity(n) + (0.5 * dt * dt) * body.acceleration;
+  body.velocity = p.velocity(n) + dt * body.acceleration;
+  rotate_freely(body, p.angular_velocity(n), p.orientation(n), torque, dt);
+  return body;
+}
+
+KOKKOS_INLINE_FUNCTION Body at_middle(const ParticleArrays& p, Index n, Vec3 gravity, Real dt) {
   Body body;
   body.inverse_mass = p.inverse_mass(n);
   body.inverse_inertia = p.inverse_inertia(n);
   if (body.inverse_mass > 0) body.acceleration = gravity + body.inverse_mass * p.force(n);
-  body.position = p.position(n) + dt * p.velocity(n) + (0.5 * dt * dt) * body.acceleration;
-  body.velocity = p.velocity(n) + dt * body.acceleration;
-  rotate_freely(body, p.angular_velocity(n), p.orientation(n), p.torque(n), dt);
+  body.position = p.position(n) + (0.5 * dt) * p.velocity(n);
+  body.velocity = p.velocity(n);
+  body.angular_velocity = p.angular_velocity(n);
+  body.orientation = p.orientation(n);
   return body;
 }
 
@@ -55,8 +68,24 @@ void wrap_positions(const ParticleArrays& particles, const Domain& domain) {
 
 void predict_motion(const ParticleArrays& particles, Vec3 gravity, Real dt, const Bodies& bodies) {
   for_each(
-      "dem::predict_motion", particles.count,
-      KOKKOS_LAMBDA(Index n) { bodies(n) = predicted(particles, n, gravity, dt); });
+      "dem::predict_motion", particles.count, KOKKOS_LAMBDA(Index n) {
+        bodies(n) = predicted(particles, n, gravity, particles.force(n), particles.torque(n), dt);
+      });
+}
+
+void predict_motion(const ParticleArrays& particles, Vec3 gravity, const ParticleLoads& contacts, Real dt,
+                    const Bodies& bodies) {
+  for_each(
+      "dem::predict_motion_with_loads", particles.count, KOKKOS_LAMBDA(Index n) {
+        bodies(n) = predicted(particles, n, gravity, particles.force(n) + contacts.force(n),
+                              particles.torque(n) + contacts.torque(n), dt);
+      });
+}
+
+void place_at_middle(const ParticleArrays& particles, Vec3 gravity, Real dt, const Bodies& bodies) {
+  for_each(
+      "dem::place_at_middle", particles.count,
+      KOKKOS_LAMBDA(Index n) { bodies(n) = at_middle(particles, n, gravity, dt); });
 }
 
 bool is_finite_motion(const Bodies& bodies, Index count) {

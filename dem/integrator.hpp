@@ -13,6 +13,13 @@ void wrap_positions(const ParticleArrays& particles, const Domain& domain);
 /// starts from rest and moves nothing.
 void predict_motion(const ParticleArrays& particles, Vec3 gravity, Real dt, const Bodies& bodies);
 
+/// The same with contact forces and torques, which come from positions x + v dt/2.
+void predict_motion(const ParticleArrays& particles, Vec3 gravity, const ParticleLoads& contacts, Real dt,
+                    const Bodies& bodies);
+
+/// Bodies at x + v dt/2, with the velocities and spins of the start.
+void place_at_middle(const ParticleArrays& particles, Vec3 gravity, Real dt, const Bodies& bodies);
+
 /// Whether all bodies are at finite positions and velocities.
 bool is_finite_motion(const Bodies& bodies, Index count);
 

@@ -107,6 +107,7 @@ void Particles::set_shape_radius(Real radius) {
 }
 
 void Particles::follow_mass_and_radius() {
+  ++revision_;
   if (inertia_follows_ && arrays_.count > 0) fill_sphere_inertias(arrays_, shape_radius_);
 }
 
@@ -206,6 +207,7 @@ void Particles::set_scales(std::span<const Real> values) {
 void Particles::set_materials(std::span<const int> ids) {
   require_count(ids.size(), count(), 1, "ids");
   upload(arrays_.material, ids.data(), count());
+  ++revision_;
 }
 
 Real Particles::largest_radius() const {

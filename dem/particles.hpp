@@ -19,6 +19,11 @@ struct ParticleArrays {
   Array<int> material;
 };
 
+/// Force and torque on each particle, along world axes.
+struct ParticleLoads {
+  Array<Vec3> force, torque;
+};
+
 class Particles {
  public:
   /// Storage for capacity particles; it grows when set_positions brings more.
@@ -52,6 +57,8 @@ class Particles {
   /// Throws std::runtime_error naming the first array that holds what the setters would refuse: arrays
   /// can be written through views.
   void require_valid_state() const;
+  /// Changes with the number, radii, masses and materials of the particles.
+  int revision() const { return revision_; }
 
  private:
   void allocate(Index capacity);
@@ -60,6 +67,7 @@ class Particles {
   ParticleArrays arrays_;
   Real shape_radius_ = 0;  // 0: no shape yet
   bool inertia_follows_ = true;
+  int revision_ = 0;
 };
 
 }  // namespace peclet::dem

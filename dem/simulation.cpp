@@ -89,6 +89,56 @@ void Simulation::advance(Real dt) {
   require_state(is_finite, "step: expected finite positions and velocities, found others; is dt = " +
                                std::to_string(dt) + " too large for the forces?");
   accept_motion(bodies_, domain_, dt == 0, particles);
+  soft_solver_.forget();
+  last_dt_ = 0;
+}
+
+void Simulation::require_elasticity() const {
+  const int of_particles = find_material_without_elasticity(scene(0));
+  const int id = of_particles >= 0 ? of_particles : walls_.find_material_without_elasticity(materials_);
+  require_state(id < 0,
+                "step_hertz: material " + std::to_string(id) +
+                    " has no Young's modulus (set_hertz_material); planes have material 0, and so have "
+                    "scene walls until set_wall_material_id");
+}
+
+SoftTimeScales Simulation::soft_time_scales() const {
+  require_ready("soft_time_scales");
+  require_elasticity();
+  return dem::soft_time_scales(scene(0));
+}
+
+void Simulation::advance_soft(Real dt, Real skin) {
+  const ParticleArrays& particles = particles_.arrays();
+  if (bodies_.extent(0) < particles.position.extent(0))
+    bodies_ = Bodies("dem.bodies", particles.position.extent(0));
+  place_at_middle(particles, gravity_, dt, bodies_);
+  ContactScene soft_scene = scene(dt);
+  soft_scene.margin = skin;
+  const ListOrigin origin{particles_.revision(), walls_.revision(), materials_.revision(), skin, domain_};
+  const ParticleLoads loads = soft_solver_.solve(soft_scene, origin, bodies_);
+  predict_motion(particles, gravity_, loads, dt, bodies_);
+  const bool is_finite = is_finite_motion(bodies_, particles.count);
+  if (!is_finite) soft_solver_.forget();
+  require_state(is_finite, "step_hertz: expected finite positions and velocities, found others; is dt = " +
+                               std::to_string(dt) + " too large for the forces?");
+  accept_motion(bodies_, Domain{}, false, particles);
+  last_dt_ = dt;
+  time_ += dt;
+}
+
+void Simulation::step_hertz(Real dt, int substeps, Real skin) {
+  require_positive(dt, "dt");
+  require(substeps >= 0, "substeps", "a count of at least 0", substeps);
+  require(skin > 0 && skin <= 2, "skin_frac", "a number above 0, at most 2", skin);
+  const SoftTimeScales scales = soft_time_scales();
+  require(
+      dt <= scales.rayleigh, "dt",
+      "at most the Rayleigh time of the smallest and stiffest particle, " + std::to_string(scales.rayleigh),
+      dt);
+  solver_.forget();
+  for (int k = 0; k < substeps; ++k) advance_soft(dt, skin);
+  wrap_positions(particles_.arrays(), domain_);
 }
 
 void Simulation::step(Real dt) {

@@ -4,6 +4,7 @@
 #include "dem/domain.hpp"
 #include "dem/materials.hpp"
 #include "dem/particles.hpp"
+#include "dem/soft_contacts.hpp"
 #include "dem/walls.hpp"
 
 namespace peclet::dem {
@@ -24,10 +25,18 @@ class Simulation {
   void set_periodic(bool x, bool y, bool z);
   void set_iterations(const SolverIterations& iterations);
   /// After the setters of the particles that make the last substep's contacts meaningless.
-  void forget_contacts() { solver_.forget(); }
+  void forget_contacts() {
+    solver_.forget();
+    soft_solver_.forget();
+  }
 
-  /// Advance by dt > 0. After an error the state is what it was.
+  /// Advance by dt > 0 with rigid contacts. After an error the state is what it was.
   void step(Real dt);
+  /// Advance by substeps of length dt > 0 with elastic contacts; the neighbour list reaches skin radii beyond
+  /// the surfaces. After an error the state is that of the last substep before it.
+  void step_hertz(Real dt, int substeps, Real skin);
+  /// What dt has to be short against in step_hertz.
+  SoftTimeScales soft_time_scales() const;
   /// Push overlapping particles apart n times; velocities stay, time stands still.
   void relax(int n);
 
@@ -46,10 +55,15 @@ class Simulation {
   /// How the last substep went, and its contacts.
   const SolverReport& report() const { return report_; }
   const ContactSolver& solver() const { return solver_; }
+  /// Contacts of the last substep of step_hertz; null where the last substep was another.
+  const SoftContacts* soft_contacts() const { return last_dt_ > 0 ? &soft_solver_.contacts() : nullptr; }
+  Real last_soft_dt() const { return last_dt_; }
 
  private:
   void require_ready(const char* caller) const;
+  void require_elasticity() const;
   void advance(Real dt);
+  void advance_soft(Real dt, Real skin);
   ContactScene scene(Real dt) const;
 
   Particles particles_;
@@ -61,7 +75,9 @@ class Simulation {
   Real time_ = 0;
   Bodies bodies_;
   ContactSolver solver_;
+  SoftContactSolver soft_solver_;
   SolverReport report_;
+  Real last_dt_ = 0;  // of step_hertz, where it was the last step
 };
 
 }  // namespace peclet::dem

@@ -25,6 +25,7 @@ void evaluate_distances(const WallArrays& walls, int index, const Array<Vec3>& p
 Walls::Walls() { upload(); }
 
 void Walls::upload() {
+  ++revision_;
   arrays_.count = static_cast<int>(walls_.size());
   arrays_.walls = Array<Wall>("dem.walls", walls_.size());
   const Kokkos::View<const Wall*, Kokkos::HostSpace, Kokkos::MemoryUnmanaged> host(walls_.data(),
@@ -45,11 +46,12 @@ void Walls::add_plane(Vec3 point, Vec3 normal) {
 }
 
 int Walls::add_scene(std::span<const int> node_ints, std::span<const Real> node_reals, int root, bool invert,
-                     Real restitution, Real friction) {
+                     Real restitution, Real friction, Real rolling_friction) {
   Wall wall;
-  wall.own_material = {restitution, 0, friction};
+  wall.own_material = {restitution, 0, friction, rolling_friction, damping_ratio(restitution)};
   require(restitution >= 0 && restitution <= 1, "restitution", "a number in [0, 1]", restitution);
   require_non_negative(friction, "friction");
+  require_non_negative(rolling_friction, "rolling_friction");
   Scene::decode(node_ints, node_reals, {}, {}).require_node(root, "root");
 
   const int first_node = static_cast<int>(node_ints_.size()) / Scene::ints_per_node;
@@ -108,6 +110,12 @@ void Walls::set_material_id(int index, int material_id) {
   Wall& wall = walls_[position_of(index)];
   wall.material_id = material_id;
   upload();
+}
+
+int Walls::find_material_without_elasticity(const Materials& materials) const {
+  for (const Wall& wall : walls_)
+    if (!materials.is_elastic(wall.elastic_id())) return wall.elastic_id();
+  return -1;
 }
 
 std::vector<Real> Walls::distances(int index, std::span<const Real> points) const {

@@ -21,6 +21,9 @@ struct Wall {
   Vec3 center;
   Real sign = 1;  // -1: inverted
   int material_id = of_default_material;
+  KOKKOS_INLINE_FUNCTION int elastic_id() const {
+    return material_id == of_own_material ? of_default_material : material_id;
+  }
   ContactMaterial own_material;
 };
 
@@ -56,7 +59,7 @@ class Walls {
   void add_plane(Vec3 point, Vec3 normal);
   /// Solid of node root of the records (see Scene); returns the index of the wall among the scenes.
   int add_scene(std::span<const int> node_ints, std::span<const Real> node_reals, int root, bool invert,
-                Real restitution, Real friction);
+                Real restitution, Real friction, Real rolling_friction = 0);
   /// Places the solid. The walls do not move by themselves.
   void set_transform(int scene_wall, Vec3 translation, Quaternion rotation);
   /// Velocity of the surface, felt by what touches it.
@@ -65,6 +68,11 @@ class Walls {
   void set_material_id(int scene_wall, int material_id);
   /// Signed distances of points (x, y, z, ...) from one wall, positive on the free side.
   std::vector<Real> distances(int scene_wall, std::span<const Real> points) const;
+
+  /// Changes with every change.
+  int revision() const { return revision_; }
+  /// Material id of a wall that has no elastic constants, or -1.
+  int find_material_without_elasticity(const Materials& materials) const;
 
   int number_of_scenes() const { return static_cast<int>(scene_walls_.size()); }
   const WallArrays& arrays() const { return arrays_; }
@@ -78,6 +86,7 @@ class Walls {
   std::vector<int> node_ints_, roots_;    // of all scenes, one after the other
   std::vector<Real> node_reals_;
   WallArrays arrays_;
+  int revision_ = 0;
 };
 
 }  // namespace peclet::dem

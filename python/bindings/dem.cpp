@@ -57,11 +57,12 @@ void set_material_ids(Simulation& simulation, nb::handle value) {
 }
 
 int add_scene_wall(Simulation& simulation, nb::handle node_ints, nb::handle node_reals, int root, bool invert,
-                   double restitution, double friction) {
+                   double restitution, double friction, double rolling_friction) {
   const Input<std::int32_t> ints(node_ints, "node_ints");
   const Input<double> reals(node_reals, "node_reals");
   reals.require_finite();
-  return simulation.walls().add_scene(ints.values(), reals.values(), root, invert, restitution, friction);
+  return simulation.walls().add_scene(ints.values(), reals.values(), root, invert, restitution, friction,
+                                      rolling_friction);
 }
 
 void set_wall_material_id(Simulation& simulation, int wall, int material) {
@@ -132,16 +133,22 @@ void define_settings(Class& c) {
       "vel"_a);
   c.def(
       "set_default_material",
-      [](Simulation& s, double normal, double tangential, double friction) {
-        s.materials().set_default({normal, tangential, friction});
+      [](Simulation& s, double normal, double tangential, double friction, double rolling_friction) {
+        s.materials().set_default({normal, tangential, friction, rolling_friction});
       },
-      "restitution_normal"_a, "restitution_tangent"_a, "friction"_a);
+      "restitution_normal"_a, "restitution_tangent"_a, "friction"_a, "rolling_friction"_a);
   c.def(
       "set_pair_material",
-      [](Simulation& s, int a, int b, double restitution, double friction) {
-        s.materials().set_pair(a, b, restitution, friction);
+      [](Simulation& s, int a, int b, double restitution, double friction, double rolling_friction) {
+        s.materials().set_pair(a, b, restitution, friction, rolling_friction);
       },
-      "a"_a, "b"_a, "restitution"_a, "friction"_a);
+      "a"_a, "b"_a, "restitution"_a, "friction"_a, "rolling_friction"_a);
+  c.def(
+      "set_elastic_material",
+      [](Simulation& s, int mat, double youngs, double poisson) {
+        s.materials().set_elastic(mat, {youngs, poisson});
+      },
+      "mat"_a, "youngs"_a, "poisson"_a);
   c.def_prop_ro("gravity", [](const Simulation& s) { return to_tuple(s.gravity()); });
   c.def_prop_ro("origin", [](const Simulation& s) { return to_tuple(s.domain().origin); });
   c.def_prop_ro("extent", [](const Simulation& s) { return to_tuple(s.domain().extent); });
@@ -215,10 +222,12 @@ void define_walls(Class& c) {
   c.def(
       "add_scene_wall",
       [](Simulation& s, nb::object node_ints, nb::object node_reals, int root, bool invert,
-         double restitution, double friction) {
-        return add_scene_wall(s, node_ints, node_reals, root, invert, restitution, friction);
+         double restitution, double friction, double rolling_friction) {
+        return add_scene_wall(s, node_ints, node_reals, root, invert, restitution, friction,
+                              rolling_friction);
       },
-      "node_ints"_a, "node_reals"_a, "root"_a, "invert"_a, "restitution"_a, "friction"_a);
+      "node_ints"_a, "node_reals"_a, "root"_a, "invert"_a, "restitution"_a, "friction"_a,
+      "rolling_friction"_a);
   c.def(
       "set_wall_transform",
       [](Simulation& s, int wall, nb::object translation, nb::object quat) {
@@ -243,6 +252,12 @@ void define_walls(Class& c) {
 
 void define_motion(Class& c) {
   c.def("step", &Simulation::step, "dt"_a, nb::call_guard<nb::gil_scoped_release>());
+  c.def("step_hertz", &Simulation::step_hertz, "dt"_a, "substeps"_a, "skin_frac"_a,
+        nb::call_guard<nb::gil_scoped_release>());
+  c.def("soft_time_scales", [](const Simulation& s) {
+    const SoftTimeScales scales = s.soft_time_scales();
+    return std::pair<double, double>(scales.rayleigh, scales.impact);
+  });
   c.def("relax", &Simulation::relax, "n"_a, nb::call_guard<nb::gil_scoped_release>());
   c.def_prop_ro("time", &Simulation::time);
   c.def("census", [](const Simulation& s) {

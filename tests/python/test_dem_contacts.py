@@ -26,6 +26,8 @@ sim.set_positions(generator.uniform((0, 0, 1), (6, 6, 12), (500, 3)))
 sim.set_scales(generator.uniform(0.5, 1.0, 500))
 for _ in range(6):
     sim.step(0.01)
+sim.set_hertz_material(0, 1e5, 0.3)
+sim.step_hertz(1e-4, 20)
 state = np.concatenate([sim.get_positions(), sim.get_velocities(), sim.get_angular_velocities()])
 print(hashlib.sha256(state.tobytes()).hexdigest())
 """

@@ -31,17 +31,24 @@ def three_flags(values: Any, name: str) -> list[bool]:
     return [_checks.flag(value, f"{name}[{n}]") for n, value in enumerate(values)]
 
 
-def _by_name(form: Sequence[str], args: Sequence[Any], kwargs: Mapping[str, Any]) -> dict[str, Any]:
+def by_name(
+    form: Sequence[str], args: Sequence[Any], kwargs: Mapping[str, Any], caller: str = "set_domain"
+) -> dict[str, Any]:
+    """What was given, by name, for a call that takes the arguments of form in this order.
+
+    >>> by_name(("dt", "substeps"), (0.1,), {"substeps": 3}, "step_hertz")
+    {'dt': 0.1, 'substeps': 3}
+    """
     if len(args) > len(form):
         raise TypeError(
-            f"set_domain: expected at most {len(form)} arguments ({', '.join(form)}), found {len(args)}"
+            f"{caller}: expected at most {len(form)} arguments ({', '.join(form)}), found {len(args)}"
         )
     named = dict(zip(form, args, strict=False))
     for name, value in kwargs.items():
         if name not in form:
-            raise TypeError(f"set_domain: expected {', '.join(form)}, found an argument {name!r}")
+            raise TypeError(f"{caller}: expected {', '.join(form)}, found an argument {name!r}")
         if name in named:
-            raise TypeError(f"set_domain: expected one value for {name}, found two")
+            raise TypeError(f"{caller}: expected one value for {name}, found two")
         named[name] = value
     return named
 
@@ -84,7 +91,7 @@ def box(args: Sequence[Any], kwargs: Mapping[str, Any]) -> Box:
     ((0.0, 0.0, 0.0), (1.0, 2.0, 3.0), None)
     """
     if (args and np.ndim(args[0]) == 0) or {"lx", "ly", "lz"} & kwargs.keys():
-        return _box_of_lengths(_by_name(("lx", "ly", "lz", "px", "py", "pz"), args, kwargs))
+        return _box_of_lengths(by_name(("lx", "ly", "lz", "px", "py", "pz"), args, kwargs))
     if {"min", "max"} & kwargs.keys() or (len(args) == 2 and not kwargs):
-        return _box_of_corners(_by_name(("min", "max"), args, kwargs))
-    return _box_of_extent(_by_name(("extent", "origin", "periodic"), args, kwargs))
+        return _box_of_corners(by_name(("min", "max"), args, kwargs))
+    return _box_of_extent(by_name(("extent", "origin", "periodic"), args, kwargs))

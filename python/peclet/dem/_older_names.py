@@ -5,13 +5,46 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from numpy.typing import ArrayLike
+from peclet import _checks
 
 if TYPE_CHECKING:
     from peclet.dem.simulation import Simulation
 
 
+_STABILIZATIONS = ("off", "onesided", "multilevel", "escalate", "ordered")
+
+
 class OlderNames:
     """Part of Simulation."""
+
+    _stabilization = "off"
+
+    def set_stabilization(self: Simulation, mode: str | bool) -> None:
+        """Accepted from scripts, without effect: contacts conserve momentum and need no stabilisation."""
+        if not isinstance(mode, str):
+            mode = "onesided" if _checks.flag(mode, "mode") else "off"
+        self._stabilization = _checks.choice(mode, "mode", _STABILIZATIONS)
+
+    def set_stabilization_mode(self: Simulation, mode: str) -> None:
+        """set_stabilization."""
+        self.set_stabilization(_checks.choice(mode, "mode", _STABILIZATIONS))
+
+    @property
+    def stabilization(self) -> str:
+        """Set by set_stabilization."""
+        return self._stabilization
+
+    def set_velocity_use_gs(self: Simulation, use_gs: bool) -> None:
+        """diagnostics.set_velocity_solver('gs' or 'jacobi')."""
+        self.diagnostics.set_velocity_solver("gs" if _checks.flag(use_gs, "use_gs") else "jacobi")
+
+    def get_growth_rate(self: Simulation) -> float:
+        """growth_rate."""
+        return self.growth_rate
+
+    def get_growth_factor(self: Simulation) -> float:
+        """growth_factor."""
+        return self.growth_factor
 
     def initialize(
         self: Simulation,

@@ -26,6 +26,7 @@ class Diagnostics:
 
     def __init__(self, core: _dem.Simulation) -> None:
         self._core = core
+        self._velocity_solver = "gs"
 
     def contacts(self) -> dict[str, NDArray[Any]]:
         """Contacts of the last substep, one row each: ``bodies`` (n, 2) int32 (second < 0: wall -1 - value,
@@ -48,6 +49,17 @@ class Diagnostics:
         contacts that were visited one by one.
         """
         return self._core.coloring_conflicts()
+
+    def set_velocity_solver(self, name: str) -> None:
+        """'gs' or 'jacobi', accepted from scripts, without effect: velocities are always settled by
+        Gauss-Seidel sweeps that give the same result for any number of threads.
+        """
+        self._velocity_solver = _checks.choice(name, "name", ("gs", "jacobi"))
+
+    @property
+    def velocity_solver(self) -> str:
+        """Set by set_velocity_solver."""
+        return self._velocity_solver
 
     def wall_sdf_at(self, wall_index: int, points: ArrayLike) -> NDArray[np.float64]:
         """Signed distance of points (n, 3) from a scene wall, positive on the free side."""

@@ -2,22 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from peclet import _checks
 from peclet.dem import _arguments, _dem
+from peclet.dem._growth import Growth
 from peclet.dem._older_names import OlderNames
 from peclet.dem._readback import CallableFloat, CallableInt
 from peclet.dem.diagnostics import Diagnostics
+from peclet.dem.soft_contacts import SoftContacts
+from peclet.dem.surfaces import Surfaces
 
 _SPHERES = ("sphere",)
 _SPHERE_CODES = (0, 1)
 
 
-class Simulation(OlderNames):
+class Simulation(Surfaces, SoftContacts, Growth, OlderNames):
     """Rigid spheres with contacts, friction and walls, advanced by substeps.
 
     Units are the user's own. Inputs may be float32, float64 or integers in any memory order; the state is
@@ -90,7 +92,7 @@ class Simulation(OlderNames):
 
     def set_sphere_shape(self, radius: float) -> None:
         """All particles are spheres of this radius (times their scale). Comes before set_positions."""
-        self._core.set_shape_radius(_checks.positive(radius, "radius"))
+        self._core.set_shape_radius(_checks.positive(radius, "radius") * self._global_scale)
 
     def initialize_shape(
         self, shape: str | int, radius: float, height: float = 0.0, thickness: float = 0.0
@@ -113,6 +115,8 @@ class Simulation(OlderNames):
         set.
         """
         self._core.set_positions(positions)
+        if self._growth_factor != 1.0:
+            self._core.set_scales(np.full(self._core.count, self._growth_factor))
 
     def set_velocities(self, velocities: ArrayLike) -> None:
         """(N, 3)."""
@@ -207,100 +211,6 @@ class Simulation(OlderNames):
         """(N,), the memory itself (see get_positions_view)."""
         return self._core.inv_mass_view()
 
-    # Materials and walls
-
-    def set_material_params(
-        self, restitution_normal: float, restitution_tangent: float = 0.0, friction: float = 0.0
-    ) -> None:
-        """Of all contacts that have nothing of their own: normal restitution in [0, 1], tangential
-        restitution in [-1, 1] (of sticking impacts, so without effect without friction), Coulomb
-        coefficient.
-        """
-        self._core.set_default_material(
-            _checks.finite(restitution_normal, "restitution_normal"),
-            _checks.finite(restitution_tangent, "restitution_tangent"),
-            _checks.non_negative(friction, "friction"),
-        )
-
-    def set_pair_material(self, a: int, b: int, restitution: float, friction: float) -> None:
-        """Of contacts between material ids a and b (0 to 1023); planes have id 0."""
-        ids = _checks.integer(a, "a", 0, 1023), _checks.integer(b, "b", 0, 1023)
-        restitution = _checks.finite(restitution, "restitution")
-        self._core.set_pair_material(*ids, restitution, _checks.non_negative(friction, "friction"))
-
-    def set_material_ids(self, ids: Sequence[int]) -> None:
-        """(N,) integers from 0 to 1023; 0 is where particles start."""
-        self._core.set_material_ids(ids)
-
-    def add_plane(self, point: ArrayLike | float, normal: ArrayLike | float, *rest: float) -> None:
-        """Half space behind ``point``; ``normal`` (any length) points to the free side. Also as six
-        numbers. Its material is that of set_material_params.
-        """
-        if not rest:
-            self._core.add_plane(_checks.vector(point, "point"), _checks.vector(normal, "normal"))
-            return
-        if len(rest) != 4:
-            raise TypeError(
-                f"add_plane: expected (point, normal) or six numbers, found {2 + len(rest)} arguments"
-            )
-        numbers = _checks.vector((point, normal, *rest), "plane", 6)
-        self._core.add_plane(numbers[:3], numbers[3:])
-
-    def add_analytic_wall(
-        self,
-        node_ints: ArrayLike,
-        node_reals: ArrayLike,
-        root: int,
-        invert: bool,
-        restitution: float = 0.0,
-        friction: float = 0.0,
-    ) -> int:
-        """The solid of node ``root`` of a scene (``SceneBuilder.encode()``) as a wall; with ``invert`` its
-        complement (a sphere becomes a spherical cave). Restitution and friction hold for all that touches
-        it. Returns the index of the wall among those added here.
-        """
-        return self._core.add_scene_wall(
-            node_ints,
-            node_reals,
-            _checks.integer(root, "root", 0),
-            _checks.flag(bool(invert) if invert in (0, 1) else invert, "invert"),
-            _checks.finite(restitution, "restitution"),
-            _checks.non_negative(friction, "friction"),
-        )
-
-    def set_wall_transform(
-        self,
-        wall_index: int,
-        translation: ArrayLike = (0.0, 0.0, 0.0),
-        quat: ArrayLike = (0.0, 0.0, 0.0, 1.0),
-    ) -> None:
-        """Place a wall. Walls do not move by themselves: give a moving one its place before each step, and
-        its velocity.
-        """
-        wall = _checks.integer(wall_index, "wall_index", 0)
-        self._core.set_wall_transform(
-            wall, _checks.vector(translation, "translation"), _checks.vector(quat, "quat", 4)
-        )
-
-    def set_wall_velocity(
-        self,
-        wall_index: int,
-        lin_vel: ArrayLike = (0.0, 0.0, 0.0),
-        ang_vel: ArrayLike = (0.0, 0.0, 0.0),
-        center: ArrayLike = (0.0, 0.0, 0.0),
-    ) -> None:
-        """Velocity of a wall's surface: lin_vel + ang_vel x (x - center), as felt by what touches it."""
-        self._core.set_wall_velocity(
-            _checks.integer(wall_index, "wall_index", 0),
-            _checks.vector(lin_vel, "lin_vel"),
-            _checks.vector(ang_vel, "ang_vel"),
-            _checks.vector(center, "center"),
-        )
-
-    def set_wall_material_id(self, wid: int, mat: int) -> None:
-        """From now on contacts with this wall follow set_pair_material."""
-        self._core.set_wall_material_id(_checks.integer(wid, "wid", 0), _checks.integer(mat, "mat", 0, 1023))
-
     # Time
 
     def set_solver_iterations(self, pos: int, vel: int) -> None:
@@ -343,6 +253,7 @@ class Simulation(OlderNames):
             return
         for _ in range(count):
             self._core.step(length)
+            self._grow(length)
 
     def relax(self, n: int = 1) -> None:
         """Push overlapping spheres apart, n times; velocities stay and time stands still."""

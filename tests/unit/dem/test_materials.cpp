@@ -31,5 +31,16 @@ TEST(Materials, RefuseValuesOutOfRange) {
   EXPECT_EQ(materials.default_material().restitution, 0);
 }
 
+TEST(Materials, DampingIsNoneForElasticAndCriticalForRestitutionExpMinusTwo) {
+  EXPECT_NEAR(damping_ratio(1), 0, 1e-12);
+  EXPECT_NEAR(damping_ratio(std::exp(-2.0)), 1, 1e-6);
+  EXPECT_EQ(damping_ratio(0), damping_ratio(0.01));
+  Real last = 10;
+  for (const Real e : {0.01, 0.1, 0.13, 0.14, 0.5, 0.9, 0.99}) {
+    EXPECT_LT(damping_ratio(e), last);
+    last = damping_ratio(e);
+  }
+}
+
 }  // namespace
 }  // namespace peclet::dem
