@@ -45,13 +45,13 @@ void add_wall_tractions(int c, const MomentumTerms& terms, const SolidSampler& s
         const Vec3 x = t.grid.face_center(c, cell[0], cell[1], cell[2]);
         const Field<Real>& v = t.extrapolated[c];
         const Real here = v[p] + t.implicit_weight * e[p];
+        const NarrowGap gap = narrow_gap(sampler, c, cell[0], cell[1], cell[2]);
         for (int d = 0; d < WallRows::directions; ++d) {
           if (!w.is_wall(row, d)) continue;
           const int a = d / 2, owner = w.owner(row, d);
           Vec3 wall = x;
           wall[a] += (d % 2 ? 1 : -1) * t.grid.spacing[a] * w.wall_distance(row, d);
-          const Real wall_velocity = owner >= 0 ? sampler.geometry.velocity(owner, wall)[c] : 0.0;
-          Real laplacian = w.weight(row, d) * (wall_velocity - here);
+          Real laplacian = w.weight(row, d) * (wall_velocity(sampler, gap, owner, c, wall) - here);
           if (!w.is_wall(row, d ^ 1)) {
             const Index q = d % 2 ? p - layout.stride(a) : p + layout.stride(a);
             laplacian += (w.weight(row, d ^ 1) - 1) * (v[q] + t.implicit_weight * e[q] - here);

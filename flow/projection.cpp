@@ -126,6 +126,30 @@ Real compute_divergence(const Grid& grid, const SweepPlan& plan, const RowRanges
   return std::max({norms.largest, at_walls, add_side_flux(grid, sides, sdf, divergence)});
 }
 
+Real compute_force_divergence(const Grid& grid, const RowRanges& rows, const FaceVector<OpenFraction>& open,
+                              const Real3& force, const Field<Real>& divergence) {
+  const FaceVector<OpenFraction> o = open;
+  const Field<Real> result = divergence;
+  Real3 scale;
+  for (int a = 0; a < 3; ++a) scale[a] = open_fraction_unit * force[a] / grid.spacing[a];
+  return max_cells(
+      "flow::compute_force_divergence", rows, KOKKOS_LAMBDA(int i, int j, int k) {
+        const Index p = result.layout()(i, j, k);
+        Real sum = 0;
+        for (int a = 0; a < 3; ++a)
+          sum += scale[a] *
+                 (static_cast<Real>(o[a][p + result.layout().stride(a)]) - static_cast<Real>(o[a][p]));
+        result[p] = sum;
+        return Kokkos::abs(sum);
+      });
+}
+
+void add_potential(const RowRanges& rows, const Field<Real>& potential, const Field<Real>& pressure) {
+  const Field<Real> phi = potential, p = pressure;
+  for_each_cell(
+      "flow::add_potential", rows, KOKKOS_LAMBDA(int i, int j, int k) { p(i, j, k) += phi(i, j, k); });
+}
+
 void apply_projection(const Grid& grid, const SweepPlan& plan, const RowRanges& rows,
                       const FaceVector<OpenFraction>& open, const DomainSides& sides,
                       const ProjectionUpdate& update, const FaceVector<Real>& velocity,

@@ -17,6 +17,14 @@ Real compute_divergence(const Grid& grid, const SweepPlan& plan, const RowRanges
                         const DomainSides& sides, const Field<Real>& sdf, const FaceVector<Real>& velocity,
                         const Field<Real>& divergence);
 
+/// divergence = div(o f) of a uniform force, fluxes through Outflow sides included; returns its largest
+/// magnitude.
+Real compute_force_divergence(const Grid& grid, const RowRanges& rows, const FaceVector<OpenFraction>& open,
+                              const Real3& force, const Field<Real>& divergence);
+
+/// pressure += potential
+void add_potential(const RowRanges& rows, const Field<Real>& potential, const Field<Real>& pressure);
+
 /// What the pressure correction phi changes.
 struct ProjectionUpdate {
   Real density_over_time_step = 1;

@@ -188,14 +188,15 @@ KOKKOS_INLINE_FUNCTION NarrowGap narrow_gap(const SolidSampler& solid, int axis,
   return gap;
 }
 
-/// Velocity along axis, at x near a closed face, of the walls there: of body, or of both sides of a narrow
-/// gap.
+/// Velocity along axis at x of the wall of body; on either side of a narrow gap it approaches the mean of
+/// both, so that nothing is squeezed or sheared in a gap that the grid does not resolve.
 KOKKOS_INLINE_FUNCTION Real wall_velocity(const SolidSampler& solid, const NarrowGap& gap, int body, int axis,
                                           Vec3 x) {
-  if (gap.share == 0) return body >= 0 ? solid.geometry.velocity(body, x)[axis] : 0.0;
-  const Real first = gap.first >= 0 ? solid.geometry.velocity(gap.first, x)[axis] : 0.0;
-  const Real second = gap.second >= 0 ? solid.geometry.velocity(gap.second, x)[axis] : 0.0;
-  return first + gap.share * (second - first);
+  const Real own = body >= 0 ? solid.geometry.velocity(body, x)[axis] : 0.0;
+  if (gap.share == 0) return own;
+  const int across = body == gap.second ? gap.first : gap.second;
+  const Real other = across >= 0 ? solid.geometry.velocity(across, x)[axis] : 0.0;
+  return own + gap.share * (other - own);
 }
 
 }  // namespace peclet::flow

@@ -6,25 +6,10 @@
 #include "core/error.hpp"
 #include "flow/diagnostics.hpp"
 #include "flow/projection.hpp"
+#include "flow/stopwatch.hpp"
 
 namespace peclet::flow {
 namespace {
-
-/// Adds the time since its construction to a counter when it goes out of scope.
-class Stopwatch {
- public:
-  explicit Stopwatch(double& seconds) : seconds_(seconds) {}
-  Stopwatch(const Stopwatch&) = delete;
-  Stopwatch& operator=(const Stopwatch&) = delete;
-  ~Stopwatch() {
-    Kokkos::fence("flow::stopwatch");
-    seconds_ += timer_.seconds();
-  }
-
- private:
-  double& seconds_;
-  Kokkos::Timer timer_;
-};
 
 /// Implicit weight of viscosity from the second step on, see flow/momentum.hpp.
 constexpr Real second_order_weight = 9.0 / 16.0;
@@ -32,6 +17,9 @@ constexpr Real second_order_weight = 9.0 / 16.0;
 constexpr Real divergence_rounding = 1e-13;
 /// Largest divergence after the projection, relative to velocity / spacing.
 constexpr Real divergence_limit = 3e-9;
+
+/// Residual of the pressure that balances the body force at the start.
+constexpr Real rest_tolerance = 1e-12;
 
 Real smallest_spacing(const Grid& grid) {
   return std::min({grid.spacing[0], grid.spacing[1], grid.spacing[2]});
@@ -53,140 +41,6 @@ Solver::Solver(const Grid& grid)
       pressure_solver_(grid, PressureSides{}) {}
 
 void Solver::change_settings(const Settings& settings) { settings_ = settings; }
-
-void Solver::set_scene(const Scene& scene, bool periodic_images) {
-  bodies_ = Bodies(scene, grid_, periodic_images, sides_.periodicity());
-  requested_poses_.assign(static_cast<std::size_t>(bodies_.count()), std::nullopt);
-  loads_.clear();
-  geometry_stale_ = true;
-  built_ = false;
-}
-
-void Solver::set_sampled_solid(const Field<Real>& distance) {
-  samples_ = distance;
-  build_geometry(false);
-}
-
-void Solver::build_geometry(bool keep_flow) {
-  take_requested_sides();
-  take_requested_poses();
-  if (samples_.is_allocated()) fill_mirrored_ghosts(samples_, sides_);
-  boundary_.build(bodies_, samples_);
-  geometry_rebuilt();
-  if (!keep_flow) {
-    for (int c = 0; c < 3; ++c) velocity_[c].fill(0);
-    pressure_.fill(0);
-  }
-  potential_.fill(0);
-  built_ = true;
-  geometry_stale_ = false;
-  wall_velocity_stale_ = false;
-  velocity_changed();
-}
-
-void Solver::take_requested_poses() {
-  for (int b = 0; b < bodies_.count(); ++b) {
-    auto& requested = requested_poses_[static_cast<std::size_t>(b)];
-    if (requested) bodies_.set_pose(b, requested->translation, requested->rotation);
-    requested.reset();
-  }
-}
-
-void Solver::geometry_rebuilt() {
-  pressure_solver_.set_open_fractions(boundary_.open(), boundary_.rows());
-  const Periodicity periodic = sides_.periodicity();
-  plan_ = SweepPlan(grid_.cells, boundary_.rows().box, periodic.axis);
-  for (int c = 0; c < 3; ++c) {
-    velocity_rows_[c] = velocity_rows(boundary_.rows(), sides_, grid_.cells, c);
-    velocity_plan_[c] = SweepPlan(grid_.cells, velocity_rows_[c].box, periodic.axis);
-  }
-}
-
-void Solver::velocity_changed() {
-  if (!built_) return;
-  mask_closed_faces(RowRanges(grid_.cells), boundary_.open(), velocity_);
-  fill_outflow_points(velocity_, sides_);
-  fill_velocity(velocity_, 1);
-  for (int c = 0; c < 3; ++c) Kokkos::deep_copy(previous_[c].array(), velocity_[c].array());
-  previous_time_step_ = 0;
-  impose_body_motion();
-}
-
-void Solver::impose_body_motion() {
-  for (int c = 0; c < 3; ++c) {
-    impose_body_velocity(boundary_.body_faces(c), velocity_[c]);
-    impose_body_velocity(boundary_.body_faces(c), previous_[c]);
-  }
-}
-
-void Solver::fill_velocity(const FaceVector<Real>& velocity, int width) const {
-  for (int c = 0; c < 3; ++c) fill_velocity_ghosts(velocity, c, sides_, width);
-}
-
-void Solver::set_side(int axis, int high, const DomainSide& side) {
-  requested_sides_.side[axis][high] = side;
-  sides_stale_ = true;
-}
-
-void Solver::take_requested_sides() {
-  if (!sides_stale_) return;
-  requested_sides_.require_pairs();
-  if (!requested_sides_.same_kinds(sides_)) {
-    boundary_ = ImmersedBoundary(grid_, requested_sides_);
-    pressure_solver_ = PressureSolver(grid_, requested_sides_.pressure_sides());
-    bodies_.set_domain(requested_sides_.periodicity());
-    built_ = false;
-  }
-  sides_ = requested_sides_;
-  sides_stale_ = false;
-}
-
-void Solver::set_pose(int body, Vec3 translation, Quaternion rotation) {
-  requested_poses_[static_cast<std::size_t>(body)] = Pose{translation, rotation, bodies_[body].pose.scale};
-  geometry_stale_ = true;
-}
-
-void Solver::set_motion(int body, const Twist& twist, const std::optional<Vec3>& center) {
-  bodies_.set_twist(body, twist);
-  if (center) bodies_.pin_center(body, *center);
-  wall_velocity_stale_ = true;
-}
-
-void Solver::promote_moved_bodies() {
-  bool promoted = false;
-  for (int b = 0; b < bodies_.count(); ++b) {
-    if (bodies_[b].dynamic || (!requested_poses_[static_cast<std::size_t>(b)] && !bodies_.moves(b))) continue;
-    bodies_.set_dynamic(b);
-    promoted = true;
-  }
-  if (!promoted || !built_) return;
-  boundary_.build(bodies_, samples_);
-  geometry_rebuilt();
-}
-
-void Solver::update_geometry() {
-  times_.geometry = 0;
-  const Stopwatch watch(times_.geometry);
-  take_requested_sides();
-  promote_moved_bodies();
-  if (!built_) return build_geometry(true);
-  // faces about to be uncovered take the velocity of the body that covers them
-  boundary_.refresh_velocity(bodies_);
-  impose_body_motion();
-  take_requested_poses();
-  boundary_.update(bodies_, pressure_);
-  pressure_solver_.update_open_fractions(boundary_.changed());
-  impose_body_motion();
-  geometry_stale_ = false;
-  wall_velocity_stale_ = false;
-}
-
-void Solver::refresh_wall_velocity() {
-  promote_moved_bodies();
-  boundary_.refresh_velocity(bodies_);
-  impose_body_motion();
-  wall_velocity_stale_ = false;
-}
 
 MomentumTerms Solver::momentum_terms() const {
   MomentumTerms terms;
@@ -215,6 +69,7 @@ void Solver::step() {
   times_ = {};
   times_.geometry = geometry_time;
 
+  balance_body_force();
   MomentumTerms terms = momentum_terms();
   const Real velocity_scale = extrapolate_velocity(velocity_plan_, velocity_rows_, velocity_, previous_,
                                                    terms.step_ratio, extrapolated_);
@@ -235,6 +90,23 @@ void Solver::step() {
   previous_time_step_ = settings_.time_step;
   time_ += settings_.time_step;
   ++steps_;
+}
+
+/// The pressure that starts a flow: what of the body force is a gradient accelerates nothing, so that a
+/// closed tank stays at rest. psi from  div(o grad psi) = div(o f),  p += psi.
+void Solver::balance_body_force() {
+  if (!force_unbalanced_) return;
+  force_unbalanced_ = false;
+  const Stopwatch watch(times_.pressure);
+  const Real largest =
+      compute_force_divergence(grid_, boundary_.rows(), boundary_.open(), settings_.body_force, divergence_);
+  if (largest == 0) return;
+  PressureSettings limits;
+  limits.max_iterations = settings_.pressure_iteration_limit;
+  limits.relative_tolerance = rest_tolerance;
+  pressure_solver_.solve(divergence_, potential_, limits);
+  add_potential(boundary_.rows(), potential_, pressure_);
+  potential_.fill(0);
 }
 
 void Solver::return_advective_leak(MomentumTerms& terms) {

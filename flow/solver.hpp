@@ -75,11 +75,14 @@ class Solver {
   /// Cells that only a periodic image other than the unshifted one makes solid.
   Index image_overlap_cells();
 
+  /// The pressure was written from outside: it balances the body force.
+  void pressure_changed() { force_unbalanced_ = false; }
   /// The velocity fields were written from outside.
   void velocity_changed();
   std::size_t bytes() const;
 
  private:
+  void balance_body_force();
   void return_advective_leak(MomentumTerms& terms);
   void predict_velocity(const MomentumTerms& terms, Real velocity_scale);
   void project_velocity(Real velocity_scale, Real implicit_weight);
@@ -101,7 +104,8 @@ class Solver {
   SweepPlan plan_;
   RowRanges velocity_rows_[3];  // points of each component
   SweepPlan velocity_plan_[3];
-  bool geometry_stale_ = true, sides_stale_ = false, wall_velocity_stale_ = false, built_ = false;
+  bool geometry_stale_ = true, force_unbalanced_ = true, sides_stale_ = false, wall_velocity_stale_ = false,
+       built_ = false;
 
   FaceVector<Real> velocity_, previous_, extrapolated_;
   Field<Real> pressure_, potential_, divergence_, residual_, samples_;

@@ -33,7 +33,9 @@ KOKKOS_INLINE_FUNCTION void fill_row(const WallRows& rows, Index row, int c, con
       const Index q = p + (s ? layout.stride(a) : -layout.stride(a));
       distance[s] = 1;
       rows.owner(row, d) = nearest;
-      if (open[c][q] != 0 || (a == c && sides.is_side(a, at[a] + (s ? 1 : -1), layout.cells))) continue;
+      if (open[c][q] != 0) continue;
+      const bool on_side = a == c && sides.is_side(a, at[a] + (s ? 1 : -1), layout.cells);
+      if (on_side && solid.sdf[s ? p : q] >= 0) continue;
       walls |= 1 << d;
       Vec3 y = x;
       y[a] += (s ? 1 : -1) * solid.grid.spacing[a];
@@ -60,15 +62,16 @@ void build_wall_rows(int c, const SolidSampler& solid, const FaceVector<OpenFrac
   const FaceVector<OpenFraction> fraction = open;
   const Layout layout = open.x.layout();
   const DomainSides box = sides;
+  const SolidSampler sampler = solid;
   rows.count = enumerate(
       "flow::build_wall_rows.count", regions.number_of_cells(), scratch, KOKKOS_LAMBDA(Index n) {
         const RegionCell cell = region.cell(n);
         const Index p = layout(cell.i, cell.j, cell.k);
-        return cell.unique && fraction[c][p] != 0 && touches_wall(fraction, box, c, cell.i, cell.j, cell.k);
+        return cell.unique && fraction[c][p] != 0 &&
+               touches_wall(fraction, sampler.sdf, box, c, cell.i, cell.j, cell.k);
       });
   rows.reserve(rows.count);
   const WallRows target = rows;
-  const SolidSampler sampler = solid;
   const Index total = regions.number_of_cells();
   const Index kept = rows.count;
   for_each(
@@ -87,15 +90,16 @@ void refresh_wall_velocity(int c, const SolidSampler& solid, const WallRows& row
       "flow::refresh_wall_velocity", rows.count, KOKKOS_LAMBDA(Index row) {
         const Int3 cell = cell_of(layout, target.face(row));
         const Vec3 x = sampler.grid.face_center(c, cell[0], cell[1], cell[2]);
+        const NarrowGap gap = narrow_gap(sampler, c, cell[0], cell[1], cell[2]);
         Real sum = 0;
         for (int d = 0; d < WallRows::directions; ++d) {
           const int body = target.owner(row, d);
-          if (!target.is_wall(row, d) || body < 0) continue;
+          if (!target.is_wall(row, d)) continue;
           const int a = d / 2;
           const Real h = sampler.grid.spacing[a];
           Vec3 wall = x;
           wall[a] += (d % 2 ? 1 : -1) * h * target.wall_distance(row, d);
-          sum += target.weight(row, d) * sampler.geometry.velocity(body, wall)[c] / (h * h);
+          sum += target.weight(row, d) * wall_velocity(sampler, gap, body, c, wall) / (h * h);
         }
         target.wall_sum(row) = sum;
       });

@@ -57,9 +57,9 @@ KOKKOS_INLINE_FUNCTION Int3 cell_of(const Layout& layout, Index n) {
 
 /// True where the stencil of component c at the fluid face of cell (i, j, k) touches the wall of a body: a
 /// neighbouring point is solid, or a face that carries mass through its control volume is partly closed.
-/// Faces on the sides of the box are no walls of bodies: ghosts express them.
-KOKKOS_INLINE_FUNCTION bool touches_wall(const FaceVector<OpenFraction>& open, const DomainSides& sides,
-                                         int c, int i, int j, int k) {
+/// Faces on the sides of the box are no walls of bodies, unless a body covers them: ghosts express them.
+KOKKOS_INLINE_FUNCTION bool touches_wall(const FaceVector<OpenFraction>& open, const Field<Real>& sdf,
+                                         const DomainSides& sides, int c, int i, int j, int k) {
   const Layout& layout = open.x.layout();
   const Index p = layout(i, j, k), own = layout.stride(c);
   const int at[3] = {i, j, k};
@@ -69,8 +69,8 @@ KOKKOS_INLINE_FUNCTION bool touches_wall(const FaceVector<OpenFraction>& open, c
     const bool low_side = sides.is_side(a, a == c ? at[a] - 1 : at[a], layout.cells);
     const bool high_side = sides.is_side(a, at[a] + 1, layout.cells);
     if (a == c) {
-      touched = touched || (!low_side && open[c][p - step] < fully_open) ||
-                (!high_side && open[c][p + step] < fully_open);
+      touched = touched || (low_side ? sdf[p - step] < 0 : open[c][p - step] < fully_open) ||
+                (high_side ? sdf[p] < 0 : open[c][p + step] < fully_open);
     } else {
       touched = touched || open[c][p - step] == 0 || open[c][p + step] == 0;
       touched = touched || (!low_side && (open[a][p] < fully_open || open[a][p - own] < fully_open)) ||

@@ -322,7 +322,11 @@ void define_results(nb::class_<Solver>& solver) {
           },
           "u"_a.none(), "v"_a.none(), "w"_a.none())
       .def("pressure", [](const Solver& s) { return to_numpy(s.pressure()); })
-      .def("assign_pressure", [](Solver& s, nb::handle p) { python::assign(s.pressure(), p, "p"); })
+      .def("assign_pressure",
+           [](Solver& s, nb::handle p) {
+             python::assign(s.pressure(), p, "p");
+             s.pressure_changed();
+           })
       .def("largest_open_divergence", &Solver::largest_open_divergence)
       .def("largest_velocity", &Solver::largest_velocity)
       .def("momentum_change",

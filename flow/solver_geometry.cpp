@@ -1,0 +1,143 @@
+// Solver: sides of the box, bodies, and what follows when they change.
+#include "flow/diagnostics.hpp"
+#include "flow/solver.hpp"
+#include "flow/stopwatch.hpp"
+
+namespace peclet::flow {
+
+void Solver::set_scene(const Scene& scene, bool periodic_images) {
+  bodies_ = Bodies(scene, grid_, periodic_images, sides_.periodicity());
+  requested_poses_.assign(static_cast<std::size_t>(bodies_.count()), std::nullopt);
+  loads_.clear();
+  geometry_stale_ = true;
+  built_ = false;
+}
+
+void Solver::set_sampled_solid(const Field<Real>& distance) {
+  samples_ = distance;
+  build_geometry(false);
+}
+
+void Solver::build_geometry(bool keep_flow) {
+  take_requested_sides();
+  take_requested_poses();
+  if (samples_.is_allocated()) fill_mirrored_ghosts(samples_, sides_);
+  boundary_.build(bodies_, samples_);
+  geometry_rebuilt();
+  if (!keep_flow) {
+    for (int c = 0; c < 3; ++c) velocity_[c].fill(0);
+    pressure_.fill(0);
+    force_unbalanced_ = true;
+  }
+  potential_.fill(0);
+  built_ = true;
+  geometry_stale_ = false;
+  wall_velocity_stale_ = false;
+  velocity_changed();
+}
+
+void Solver::take_requested_poses() {
+  for (int b = 0; b < bodies_.count(); ++b) {
+    auto& requested = requested_poses_[static_cast<std::size_t>(b)];
+    if (requested) bodies_.set_pose(b, requested->translation, requested->rotation);
+    requested.reset();
+  }
+}
+
+void Solver::geometry_rebuilt() {
+  pressure_solver_.set_open_fractions(boundary_.open(), boundary_.rows());
+  const Periodicity periodic = sides_.periodicity();
+  plan_ = SweepPlan(grid_.cells, boundary_.rows().box, periodic.axis);
+  for (int c = 0; c < 3; ++c) {
+    velocity_rows_[c] = velocity_rows(boundary_.rows(), sides_, grid_.cells, c);
+    velocity_plan_[c] = SweepPlan(grid_.cells, velocity_rows_[c].box, periodic.axis);
+  }
+}
+
+void Solver::velocity_changed() {
+  if (!built_) return;
+  mask_closed_faces(RowRanges(grid_.cells), boundary_.open(), velocity_);
+  fill_outflow_points(velocity_, sides_);
+  fill_velocity(velocity_, 1);
+  for (int c = 0; c < 3; ++c) Kokkos::deep_copy(previous_[c].array(), velocity_[c].array());
+  previous_time_step_ = 0;
+  impose_body_motion();
+}
+
+void Solver::impose_body_motion() {
+  for (int c = 0; c < 3; ++c) {
+    impose_body_velocity(boundary_.body_faces(c), velocity_[c]);
+    impose_body_velocity(boundary_.body_faces(c), previous_[c]);
+  }
+}
+
+void Solver::fill_velocity(const FaceVector<Real>& velocity, int width) const {
+  for (int c = 0; c < 3; ++c) fill_velocity_ghosts(velocity, c, sides_, width);
+}
+
+void Solver::set_side(int axis, int high, const DomainSide& side) {
+  requested_sides_.side[axis][high] = side;
+  sides_stale_ = true;
+}
+
+void Solver::take_requested_sides() {
+  if (!sides_stale_) return;
+  requested_sides_.require_pairs();
+  if (!requested_sides_.same_kinds(sides_)) {
+    boundary_ = ImmersedBoundary(grid_, requested_sides_);
+    pressure_solver_ = PressureSolver(grid_, requested_sides_.pressure_sides());
+    bodies_.set_domain(requested_sides_.periodicity());
+    built_ = false;
+  }
+  sides_ = requested_sides_;
+  sides_stale_ = false;
+}
+
+void Solver::set_pose(int body, Vec3 translation, Quaternion rotation) {
+  requested_poses_[static_cast<std::size_t>(body)] = Pose{translation, rotation, bodies_[body].pose.scale};
+  geometry_stale_ = true;
+}
+
+void Solver::set_motion(int body, const Twist& twist, const std::optional<Vec3>& center) {
+  bodies_.set_twist(body, twist);
+  if (center) bodies_.pin_center(body, *center);
+  wall_velocity_stale_ = true;
+}
+
+void Solver::promote_moved_bodies() {
+  bool promoted = false;
+  for (int b = 0; b < bodies_.count(); ++b) {
+    if (bodies_[b].dynamic || (!requested_poses_[static_cast<std::size_t>(b)] && !bodies_.moves(b))) continue;
+    bodies_.set_dynamic(b);
+    promoted = true;
+  }
+  if (!promoted || !built_) return;
+  boundary_.build(bodies_, samples_);
+  geometry_rebuilt();
+}
+
+void Solver::update_geometry() {
+  times_.geometry = 0;
+  const Stopwatch watch(times_.geometry);
+  take_requested_sides();
+  promote_moved_bodies();
+  if (!built_) return build_geometry(true);
+  // faces about to be uncovered take the velocity of the body that covers them
+  boundary_.refresh_velocity(bodies_);
+  impose_body_motion();
+  take_requested_poses();
+  boundary_.update(bodies_, pressure_);
+  pressure_solver_.update_open_fractions(boundary_.changed());
+  impose_body_motion();
+  geometry_stale_ = false;
+  wall_velocity_stale_ = false;
+}
+
+void Solver::refresh_wall_velocity() {
+  promote_moved_bodies();
+  boundary_.refresh_velocity(bodies_);
+  impose_body_motion();
+  wall_velocity_stale_ = false;
+}
+
+}  // namespace peclet::flow
