@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from peclet import flow
 
-from tests.validation.helpers import orders
+from examples.validation.results import orders
 
 LENGTHS = np.array([1.0, 1.5])
 WAVES = 2 * np.pi / LENGTHS
