@@ -133,6 +133,49 @@ def test_sphere_on_an_incline_rolls_or_slides(angle, friction):
     assert sim.get_positions()[0, 2] == pytest.approx(RADIUS, abs=1e-12)
 
 
+def test_disc_starts_to_roll():
+    """I = m r^2 / 2: 2/3 of the speed is left, after v0 / (3 mu g) and 5 v0^2 / (18 mu g)."""
+    friction, speed = 0.3, 2.0
+    time = speed / (3 * friction * G)
+    sim = sphere_on_plane(0.0, velocity=(speed, 0, 0), friction=friction)
+    sim.set_inv_inertia([[2 / RADIUS**2] * 3])
+    run(sim, time, time / 200)
+    assert sim.get_velocities()[0, 0] == pytest.approx(2 / 3 * speed, rel=TOLERANCE)
+    assert sim.get_positions()[0, 0] == pytest.approx(5 * speed**2 / (18 * friction * G), rel=TOLERANCE)
+
+
+@pytest.mark.parametrize("friction", [0.2, 0.8])
+def test_block_on_an_incline_sticks_or_slides(friction):
+    angle = 0.6
+    sim = sphere_on_plane(0.0, gravity=(G * np.sin(angle), 0, -G * np.cos(angle)), friction=friction)
+    sim.set_inv_inertia([[0, 0, 0]])
+    run(sim, 1.0)
+    expected = max(0.0, G * (np.sin(angle) - friction * np.cos(angle)))
+    assert sim.get_velocities()[0, 0] == pytest.approx(expected, rel=TOLERANCE, abs=1e-9)
+
+
+def test_rolling_friction_slows_a_rolling_sphere():
+    """Moment mu_r R m g on a sphere that rolls: a = 5/7 mu_r g, until it stands."""
+    sim = sphere_on_plane(
+        0.0, velocity=(1, 0, 0), spin=(0, 1 / RADIUS, 0), friction=0.5, rolling_friction=0.05
+    )
+    run(sim, 1.0)
+    assert 1 - sim.get_velocities()[0, 0] == pytest.approx(5 / 7 * 0.05 * G, rel=TOLERANCE)
+    run(sim, 3.0)
+    np.testing.assert_allclose(sim.get_velocities(), 0, atol=1e-9)
+    assert sim.get_positions()[0, 0] == pytest.approx(1 / (2 * 5 / 7 * 0.05 * G), rel=TOLERANCE)
+
+
+@pytest.mark.parametrize("angle", [0.3, 0.5])
+def test_rolling_friction_holds_a_sphere_on_a_gentle_incline(angle):
+    """It stands while tan(angle) <= mu_r; then a = 5/7 g (sin - mu_r cos)."""
+    rolling = 0.4
+    gravity = (G * np.sin(angle), 0, -G * np.cos(angle))
+    sim = run(sphere_on_plane(0.0, gravity=gravity, friction=1.0, rolling_friction=rolling), 1.0)
+    expected = max(0.0, 5 / 7 * G * (np.sin(angle) - rolling * np.cos(angle)))
+    assert sim.get_velocities()[0, 0] == pytest.approx(expected, rel=TOLERANCE, abs=1e-6)
+
+
 @pytest.mark.parametrize("approach_ratio", [0.1, 0.3, 0.45, 0.5, 1.0, 3.0])
 def test_oblique_impact_slides_or_sticks(approach_ratio):
     restitution, friction, beta = 0.9, 0.1, 0.4
@@ -179,7 +222,7 @@ def test_newton_cradle_passes_the_speed_on():
 def test_impact_with_friction_keeps_angular_momentum():
     sim = dem.Simulation(2)
     sim.set_sphere_shape(RADIUS)
-    sim.set_material_params(0.4, 0.3, 0.5)
+    sim.set_material_params(0.4, 0.3, 0.5, 0.1)
     sim.set_positions([[0, 0, 0], [1.3, 0.4, -0.2]])
     sim.set_scales([1.0, 1.4])
     sim.set_inv_mass([1.0, 0.3])

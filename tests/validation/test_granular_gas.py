@@ -36,8 +36,8 @@ def collision_rate(sim, length, fraction):
     ("per_side", "fraction", "restitution", "duration"),
     [
         (9, 0.05, 0.95, 1.0),
-        pytest.param(20, 0.05, 0.95, 3.0, marks=pytest.mark.slow),
-        pytest.param(20, 0.10, 0.92, 3.0, marks=pytest.mark.slow),
+        pytest.param(16, 0.05, 0.95, 3.0, marks=pytest.mark.slow),
+        pytest.param(16, 0.10, 0.92, 3.0, marks=pytest.mark.slow),
     ],
 )
 def test_granular_gas_cools_by_haffs_law(per_side, fraction, restitution, duration):
