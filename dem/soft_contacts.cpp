@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "dem/make_room.hpp"
+#include "dem/wall_features.hpp"
 
 namespace peclet::dem {
 namespace {

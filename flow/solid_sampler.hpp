@@ -128,7 +128,8 @@ KOKKOS_INLINE_FUNCTION int nearest_owner(const SolidSampler& solid, int c, Index
 }
 
 /// Distance from x to the wall along the segment towards y, as a fraction of the segment: root of the
-/// signed distance by safeguarded false position; 1 where the solid begins beyond y.
+/// signed distance by false position, where an end that stays twice counts half (Illinois rule); 1 where the
+/// solid begins beyond y.
 KOKKOS_INLINE_FUNCTION Real wall_crossing(const SolidSampler& solid, int owner_a, int owner_b, Vec3 x,
                                           Vec3 y) {
   Real low = 0, high = 1;
@@ -136,6 +137,7 @@ KOKKOS_INLINE_FUNCTION Real wall_crossing(const SolidSampler& solid, int owner_a
   if (d_low <= 0) return 0;
   if (d_high >= 0) return 1;
   Real root = 1;
+  int side = 0;  // of the wall on which the last root fell
   for (int iteration = 0; iteration < 6; ++iteration) {
     root = low + (high - low) * d_low / (d_low - d_high);
     const Real d = solid.distance(owner_a, owner_b, x + root * (y - x));
@@ -143,11 +145,13 @@ KOKKOS_INLINE_FUNCTION Real wall_crossing(const SolidSampler& solid, int owner_a
     if (d > 0) {
       low = root;
       d_low = d;
-      d_high *= 0.5;  // Illinois rule
+      if (side > 0) d_high *= 0.5;
+      side = 1;
     } else {
       high = root;
       d_high = d;
-      d_low *= 0.5;
+      if (side < 0) d_low *= 0.5;
+      side = -1;
     }
   }
   return root;

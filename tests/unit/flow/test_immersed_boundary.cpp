@@ -1,0 +1,86 @@
+#include "flow/immersed_boundary.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "boundary_in_tests.hpp"
+
+namespace {
+
+using namespace peclet;
+using namespace peclet::flow;
+
+const Grid grid = grid_in_tests();  // 7 x 6.875 x 6.75
+const SphereInTest crossing_the_edge{{5.6, 3.1, 6.9}, 1.9};
+
+std::vector<OpenFraction> open_values(const ImmersedBoundary& boundary) {
+  std::vector<OpenFraction> all;
+  for (int a = 0; a < 3; ++a) {
+    const std::vector<OpenFraction> values = host_values(boundary.open()[a]);
+    all.insert(all.end(), values.begin(), values.end());
+  }
+  return all;
+}
+
+TEST(ImmersedBoundary, WithoutBodiesEveryFaceIsOpen) {
+  const BoundaryInTest empty({});
+  for (const OpenFraction open : open_values(empty.boundary)) EXPECT_EQ(open, fully_open);
+  for (int c = 0; c < 3; ++c) EXPECT_EQ(empty.boundary.fixed_rows(c).count, 0);
+}
+
+TEST(ImmersedBoundary, ClosedFacesFillTheVolumeOfTheBody) {
+  const BoundaryInTest fixed({crossing_the_edge});
+  for (int a = 0; a < 3; ++a) {
+    Real closed = 0;
+    for (const OpenFraction open : host_values(fixed.boundary.open()[a])) closed += open == 0;
+    const Real volume = 4.0 / 3.0 * std::acos(-1.0) * std::pow(1.9, 3);
+    // points of a lattice inside a sphere of three cells radius
+    EXPECT_NEAR(closed * grid.cell_volume(), volume, 0.1 * volume);
+  }
+}
+
+TEST(ImmersedBoundary, FixedAndMovingBodiesAreSampledAlike) {
+  const BoundaryInTest fixed({crossing_the_edge}), moves({moving(crossing_the_edge, {0.1, 0, 0})});
+  EXPECT_EQ(open_values(fixed.boundary), open_values(moves.boundary));
+  for (int c = 0; c < 3; ++c)
+    EXPECT_EQ(fixed.boundary.fixed_rows(c).count, moves.boundary.moving_rows(c).count);
+}
+
+TEST(ImmersedBoundary, AnUpdateGivesWhatANewBuildWould) {
+  BoundaryInTest moved({moving({{1.9, 5.2, 3.1}, 1.2}, {0.1, 0, 0}), {{4.9, 3.1, 1.9}, 1.6}});
+  const Field<Real> pressure("pressure", Layout(grid.cells));
+  for (const Vec3 position : {Vec3{2.6, 4.9, 3.3}, Vec3{6.3, 7.0, 0.2}}) {
+    const std::vector<OpenFraction> before = open_values(moved.boundary);
+    moved.bodies.set_pose(0, position, {});
+    moved.boundary.update(moved.bodies, pressure);
+    const BoundaryInTest fresh({moving({position, 1.2}, {0.1, 0, 0}), {{4.9, 3.1, 1.9}, 1.6}});
+    EXPECT_EQ(open_values(moved.boundary), open_values(fresh.boundary));
+    EXPECT_NE(open_values(moved.boundary), before);
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_EQ(moved.boundary.moving_rows(c).count, fresh.boundary.moving_rows(c).count);
+      EXPECT_EQ(moved.boundary.body_faces(c).count, fresh.boundary.body_faces(c).count);
+    }
+    EXPECT_EQ(moved.boundary.cut_cells().count, fresh.boundary.cut_cells().count);
+  }
+}
+
+TEST(ImmersedBoundary, ChangedBoxesHoldEveryFaceThatChanged) {
+  BoundaryInTest moved({moving(crossing_the_edge, {0.1, 0, 0})});
+  const std::vector<OpenFraction> before = open_values(moved.boundary);
+  moved.bodies.set_pose(0, {1.1, 4.0, 0.8}, {});
+  moved.boundary.update(moved.bodies, Field<Real>("pressure", Layout(grid.cells)));
+  const std::vector<OpenFraction> after = open_values(moved.boundary);
+  std::size_t n = 0;
+  for (int a = 0; a < 3; ++a)
+    for (int k = 0; k < grid.cells[2]; ++k)
+      for (int j = 0; j < grid.cells[1]; ++j)
+        for (int i = 0; i < grid.cells[0]; ++i, ++n) {
+          if (before[n] == after[n]) continue;
+          bool inside = false;
+          for (const Box& box : moved.boundary.changed()) inside = inside || box.contains(i, j, k);
+          EXPECT_TRUE(inside);
+        }
+}
+
+}  // namespace

@@ -1,0 +1,88 @@
+#include "flow/wall_rows.hpp"
+
+#include <gtest/gtest.h>
+
+#include "boundary_in_tests.hpp"
+
+namespace {
+
+using namespace peclet;
+using namespace peclet::flow;
+
+const Grid grid = grid_in_tests();  // 7 x 6.875 x 6.75
+
+/// Distance from the centre of every wall point that a row of component c sees.
+std::vector<Real> wall_radii(const WallRows& rows, int c, Vec3 center) {
+  const Array<Real> radii("radii", static_cast<std::size_t>(rows.count * WallRows::directions));
+  const Layout layout(grid.cells);
+  const Grid box = grid;
+  const WallRows w = rows;
+  for_each(
+      "wall_radii", rows.count, KOKKOS_LAMBDA(Index row) {
+        const Int3 cell = cell_of(layout, w.face(row));
+        for (int d = 0; d < WallRows::directions; ++d) {
+          Vec3 x = box.face_center(c, cell[0], cell[1], cell[2]);
+          x[d / 2] += (d % 2 ? 1 : -1) * box.spacing[d / 2] * w.wall_distance(row, d);
+          const bool counts = w.is_wall(row, d) && w.wall_distance(row, d) > 1.01 * smallest_wall_distance;
+          radii(row * WallRows::directions + d) = counts ? norm(x - center) : 0;
+        }
+      });
+  return copy_to_host(radii);
+}
+
+TEST(WallRows, SeeTheWallWhereItIs) {
+  const Vec3 center{2.6, 5.2, 3.6};
+  const BoundaryInTest fixed({{center, 1.9}});
+  for (int c = 0; c < 3; ++c) {
+    int walls = 0;
+    for (const Real radius : wall_radii(fixed.boundary.fixed_rows(c), c, center)) {
+      if (radius == 0) continue;
+      ++walls;
+      EXPECT_NEAR(radius, 1.9, 1e-5);  // weights are kept in single precision
+    }
+    EXPECT_GT(walls, 50);
+  }
+}
+
+/// For every row: sum over directions of weight (q(x_d) - q(x)) for q = r . r in spacings, which is 2 per
+/// axis.
+std::vector<Real> second_derivatives(const WallRows& rows) {
+  const Array<Real> sums("sums", static_cast<std::size_t>(rows.count));
+  const WallRows w = rows;
+  for_each(
+      "second_derivatives", rows.count, KOKKOS_LAMBDA(Index row) {
+        for (int d = 0; d < WallRows::directions; ++d) {
+          const Real step = w.is_wall(row, d) ? w.wall_distance(row, d) : 1;
+          sums(row) += w.weight(row, d) * step * step;
+        }
+      });
+  return copy_to_host(sums);
+}
+
+TEST(WallRows, AreExactForQuadraticProfiles) {
+  const BoundaryInTest fixed({{{2.6, 5.2, 3.6}, 1.9}});
+  for (int c = 0; c < 3; ++c)
+    for (const Real sum : second_derivatives(fixed.boundary.fixed_rows(c))) EXPECT_NEAR(sum, 6, 1e-4);
+}
+
+/// Largest magnitude of the viscous term of a row of component c in a uniform stream.
+Real largest_term(const WallRows& rows, Real speed) {
+  const WallRows w = rows;
+  const Grid box = grid;
+  return max_each(
+      "largest_term", rows.count, KOKKOS_LAMBDA(Index row) {
+        Real sum = w.wall_sum(row);
+        for (int d = 0; d < WallRows::directions; ++d)
+          if (w.is_wall(row, d)) sum -= w.weight(row, d) * speed / (box.spacing[d / 2] * box.spacing[d / 2]);
+        return Kokkos::abs(sum);
+      });
+}
+
+TEST(WallRows, AStreamThatMovesWithTheBodyHasNoFriction) {
+  const Vec3 velocity{0.3, -0.2, 0.1};
+  const BoundaryInTest moves({moving({{2.6, 5.2, 3.6}, 1.9}, velocity)});
+  // weights reach 2 / 0.01^2 at the smallest wall distance
+  for (int c = 0; c < 3; ++c) EXPECT_LT(largest_term(moves.boundary.moving_rows(c), velocity[c]), 1e-10);
+}
+
+}  // namespace
