@@ -34,17 +34,18 @@ std::vector<T> copy_to_host(const Array<T>& array) {
   return values;
 }
 
-/// values[i + nx (j + ny k)] = field(i, j, k)
+/// Values of the cells of a box (ghosts may be among them), x fastest.
 template <class T>
-void copy_to_host(const Field<T>& field, T* values) {
-  const Int3 n = field.layout().cells;
-  const Index size = static_cast<Index>(n[0]) * n[1] * n[2];
+void copy_to_host(const Field<T>& field, const Box& box, T* values) {
+  const Index size = box.size();
   const Array<T> dense = runs_on_host
                              ? Array<T>(values, size)
                              : Array<T>(Kokkos::view_alloc("core::dense", Kokkos::WithoutInitializing), size);
   for_each_cell(
-      "core::copy_to_host", RowRanges(n), KOKKOS_LAMBDA(int i, int j, int k) {
-        dense(i + n[0] * (j + static_cast<Index>(n[1]) * k)) = field(i, j, k);
+      "core::copy_to_host", box, KOKKOS_LAMBDA(int i, int j, int k) {
+        dense(i - box.low[0] +
+              box.extent(0) * (j - box.low[1] + static_cast<Index>(box.extent(1)) * (k - box.low[2]))) =
+            field(i, j, k);
       });
   if (runs_on_host)
     Kokkos::fence("core::copy_to_host");
@@ -52,16 +53,29 @@ void copy_to_host(const Field<T>& field, T* values) {
     copy_to_host(dense, values);
 }
 
+/// The cells of a field: values[i + nx (j + ny k)] = field(i, j, k)
+template <class T>
+void copy_to_host(const Field<T>& field, T* values) {
+  copy_to_host(field, Box{{0, 0, 0}, field.layout().cells}, values);
+}
+
+/// Overwrites the cells of a box; the rest of the field stays as it is.
+template <class T>
+void copy_from_host(const T* values, const Box& box, const Field<T>& field) {
+  const Array<T> dense = copy_from_host("core::dense", values, box.size());
+  for_each_cell(
+      "core::copy_from_host", box, KOKKOS_LAMBDA(int i, int j, int k) {
+        field(i, j, k) =
+            dense(i - box.low[0] +
+                  box.extent(0) * (j - box.low[1] + static_cast<Index>(box.extent(1)) * (k - box.low[2])));
+      });
+  Kokkos::fence("core::copy_from_host");
+}
+
 /// field(i, j, k) = values[i + nx (j + ny k)]; ghosts stay as they are.
 template <class T>
 void copy_from_host(const T* values, const Field<T>& field) {
-  const Int3 n = field.layout().cells;
-  const Array<T> dense = copy_from_host("core::dense", values, static_cast<Index>(n[0]) * n[1] * n[2]);
-  for_each_cell(
-      "core::copy_from_host", RowRanges(n), KOKKOS_LAMBDA(int i, int j, int k) {
-        field(i, j, k) = dense(i + n[0] * (j + static_cast<Index>(n[1]) * k));
-      });
-  Kokkos::fence("core::copy_from_host");
+  copy_from_host(values, Box{{0, 0, 0}, field.layout().cells}, field);
 }
 
 }  // namespace peclet

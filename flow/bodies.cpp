@@ -116,6 +116,23 @@ void Bodies::set_dynamic(int b) {
   stale_ = true;
 }
 
+BodyMotion Bodies::motion(int b) const {
+  const Body& body = (*this)[b];
+  return {body.pose, body.twist, body.center, center_pinned(b), body.dynamic};
+}
+
+void Bodies::restore(int b, const BodyMotion& motion) {
+  const auto n = static_cast<std::size_t>(b);
+  Body& body = bodies_[n];
+  body.pose = motion.pose;
+  body.twist = motion.twist;
+  body.center = motion.center;
+  body.dynamic = motion.dynamic;
+  pinned_[n] = motion.pinned;
+  compare_with_periods(body);
+  stale_ = true;
+}
+
 const BodyGeometry& Bodies::geometry() {
   if (stale_) {
     const Kokkos::View<const Body*, Kokkos::HostSpace, Kokkos::MemoryTraits<Kokkos::Unmanaged>> host(

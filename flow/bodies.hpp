@@ -93,6 +93,14 @@ struct BodyGeometry {
   }
 };
 
+/// What changes of a body while a flow runs.
+struct BodyMotion {
+  Pose pose;
+  Twist twist;
+  Vec3 center;
+  bool pinned = false, dynamic = false;
+};
+
 /// Host side: owns the instances, moves them, and hands a BodyGeometry to kernels.
 class Bodies {
  public:
@@ -109,6 +117,9 @@ class Bodies {
   void set_twist(int b, Twist twist);
   void pin_center(int b, Vec3 center);
   void set_dynamic(int b);
+  /// All of one body's motion at once, as a checkpoint holds it.
+  void restore(int b, const BodyMotion& motion);
+  BodyMotion motion(int b) const;
   /// Which sides of the box are periodic.
   void set_domain(const Periodicity& domain);
 

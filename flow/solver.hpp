@@ -22,6 +22,21 @@ struct StepTimes {
   double geometry = 0, momentum = 0, viscous = 0, pressure = 0, loads = 0, rest = 0;
 };
 
+/// Where the time scheme stands.
+struct Clock {
+  double time = 0;
+  Real previous_time_step = 0;  // 0: the next step has no past
+  long steps = 0;
+  bool force_unbalanced = true;
+};
+
+/// A field of the state and the points of it that are unknowns.
+struct StoredField {
+  std::string name;
+  Field<Real> field;
+  Box box;
+};
+
 class Solver {
  public:
   explicit Solver(const Grid& grid);
@@ -42,6 +57,8 @@ class Solver {
   void set_pose(int body, Vec3 translation, Quaternion rotation);
   void set_motion(int body, const Twist& twist, const std::optional<Vec3>& center);
   void update_geometry();
+  /// Sides and bodies have been sampled and are up to date.
+  bool has_geometry() const { return built_ && !geometry_stale_ && !sides_stale_; }
   void refresh_wall_velocity();
   int number_of_bodies() const { return bodies_.count(); }
   const Bodies& bodies() const { return bodies_; }
@@ -77,6 +94,14 @@ class Solver {
 
   /// The pressure was written from outside: it balances the body force.
   void pressure_changed() { force_unbalanced_ = false; }
+  /// State that a run needs to go on as if it had not stopped.
+  Clock clock() const { return {time_, previous_time_step_, steps_, force_unbalanced_}; }
+  std::vector<StoredField> stored_fields() const;
+  /// Puts the bodies back and samples them; then the stored fields are to be overwritten, and last
+  /// restore_clock() called.
+  void restore_bodies(const std::vector<BodyMotion>& motions);
+  void restore_clock(const Clock& clock);
+
   /// The velocity fields were written from outside.
   void velocity_changed();
   std::size_t bytes() const;

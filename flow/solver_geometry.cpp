@@ -93,6 +93,37 @@ void Solver::take_requested_sides() {
   sides_stale_ = false;
 }
 
+std::vector<StoredField> Solver::stored_fields() const {
+  const Box cells{{0, 0, 0}, grid_.cells};
+  const std::string names[3] = {"u", "v", "w"};
+  std::vector<StoredField> fields;
+  for (int c = 0; c < 3; ++c) {
+    Box points = cells;
+    points.high[c] += sides_.side[c][1].kind == SideKind::Outflow;
+    fields.push_back({names[c], velocity_[c], points});
+    fields.push_back({names[c] + "_previous", previous_[c], points});
+  }
+  fields.push_back({"p", pressure_, cells});
+  fields.push_back({"potential", potential_, cells});
+  return fields;
+}
+
+void Solver::restore_bodies(const std::vector<BodyMotion>& motions) {
+  for (std::size_t b = 0; b < motions.size(); ++b) {
+    bodies_.restore(static_cast<int>(b), motions[b]);
+    requested_poses_[b].reset();
+  }
+  build_geometry(true);
+}
+
+void Solver::restore_clock(const Clock& clock) {
+  fill_velocity(velocity_, 1);
+  time_ = clock.time;
+  previous_time_step_ = clock.previous_time_step;
+  steps_ = clock.steps;
+  force_unbalanced_ = clock.force_unbalanced;
+}
+
 void Solver::set_pose(int body, Vec3 translation, Quaternion rotation) {
   requested_poses_[static_cast<std::size_t>(body)] = Pose{translation, rotation, bodies_[body].pose.scale};
   geometry_stale_ = true;

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from peclet import flow
+from peclet.core import geom
 
 from tests.python.flow_scenes import box_with, face_is_fluid
 
@@ -151,3 +152,54 @@ def test_one_cell_thick_boxes_work():
         solver.step()
         for component, force in zip("uvw", (1, 2, 3), strict=True):
             np.testing.assert_allclose(solver.get_field(component), 0.5 * force, rtol=1e-7)
+
+
+def stream_past_a_moving_sphere():
+    solver = flow.Solver((16, 10, 8), extent=(1.6, 1.0, 0.8))
+    solver.set_domain_bc("-x", "inflow", [0.5, 0, 0])
+    solver.set_domain_bc("+x", "outflow")
+    solver.set_domain_bc("-y", "slip")
+    solver.set_domain_bc("+y", "wall")
+    builder = geom.SceneBuilder()
+    sphere = builder.add_leaf("sphere", [0.21])
+    builder.add_instance(sphere, translation=[0.5, 0.52, 0.41], lin_vel=[0.2, 0, 0])
+    solver.set_scene(*builder.encode())
+    solver.set_solid_from_scene()
+    solver.set_mu(0.01)
+    solver.set_dt(0.02)
+    solver.set_advection(True)
+    return solver
+
+
+def advance(solver, steps):
+    for n in steps:
+        solver.set_instance_transform(0, [0.5 + 0.004 * n, 0.52, 0.41])
+        solver.rebuild_geometry()
+        solver.step()
+
+
+def test_a_run_goes_on_from_a_checkpoint_bit_by_bit():
+    whole, first, second = (stream_past_a_moving_sphere() for _ in range(3))
+    advance(whole, range(1, 9))
+    advance(first, range(1, 5))
+    second.restore(first.checkpoint())
+    assert second.time == first.time
+    advance(second, range(5, 9))
+    for name, values in whole.checkpoint().items():
+        assert np.array_equal(second.checkpoint()[name], values), name
+    assert np.array_equal(second.hydro_force_torque_reaction(), whole.hydro_force_torque_reaction())
+
+
+def test_a_checkpoint_that_does_not_fit_is_refused():
+    solver = stream_past_a_moving_sphere()
+    advance(solver, range(1, 3))
+    before = solver.checkpoint()
+    for name, broken in (
+        ("state", {k: v for k, v in before.items() if k != "u"}),
+        (r"state\['u'\]", before | {"u": before["u"][1:]}),
+        (r"state\['p'\]", before | {"p": np.full_like(before["p"], np.nan)}),
+    ):
+        with pytest.raises(ValueError, match=name):
+            solver.restore(broken)
+        for key, values in solver.checkpoint().items():
+            assert np.array_equal(values, before[key]), key

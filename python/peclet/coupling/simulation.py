@@ -14,7 +14,7 @@ from peclet.coupling.bodies import Body, fluid_inertia
 from peclet.coupling.history import History
 from peclet.coupling.interrupt import between_steps
 from peclet.coupling.rotation import from_body_axes, to_body_axes
-from peclet.coupling.state import contact_state, flow_state, require_valid, restore
+from peclet.coupling.state import contact_state, require_valid, restore
 
 Vectors = NDArray[np.float64]
 _AXES = ("x", "y", "z")
@@ -166,8 +166,8 @@ class CoupledSimulation:
     def restart(self, path: str | pathlib.Path) -> None:
         """Go on from a file that `save` wrote.
 
-        The simulation must have been set up by the same calls as the one that was saved. The flow goes on
-        from velocity and pressure, so that its first step is of first order in time.
+        The simulation must have been set up by the same calls as the one that was saved; it then goes on bit
+        by bit, for the same number of threads.
         """
         self.set_state(checkpoint.read(path))
 
@@ -181,7 +181,7 @@ class CoupledSimulation:
         }
         return checkpoint.join(
             {
-                "flow": flow_state(self._flow),
+                "flow": self._flow.checkpoint(),
                 "contacts": contact_state(self._contacts),
                 "coupling": own,
                 "history": self._history.arrays(),
@@ -195,8 +195,6 @@ class CoupledSimulation:
         checkpoint.require_shapes(own, self._own_shapes(), "coupling")
         history = History.from_arrays(parts["history"], len(self._bodies))
         require_valid(self._flow, parts["flow"], self._contacts, parts["contacts"])
-        self._place_bodies(*(parts["contacts"][name] for name in _MOTION))
-        self._flow.rebuild_geometry()
         restore(self._flow, parts["flow"], self._contacts, parts["contacts"])
         self._set_masses()
         self._time, self._number_of_steps = float(own["time"]), int(own["number_of_steps"])

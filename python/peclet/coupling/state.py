@@ -6,13 +6,7 @@ from typing import Any
 
 from peclet.coupling.checkpoint import State, require_shapes
 
-_FLOW = ("u", "v", "w", "p")
 _CONTACTS = {"positions": 3, "velocities": 3, "angular_velocities": 3, "quaternions": 4}
-
-
-def flow_state(flow: Any) -> State:
-    """Velocity and pressure."""
-    return {name: flow.get_field(name) for name in _FLOW}
 
 
 def contact_state(contacts: Any) -> State:
@@ -22,18 +16,14 @@ def contact_state(contacts: Any) -> State:
 
 def require_valid(flow: Any, flow_part: State, contacts: Any, contact_part: State) -> None:
     """Raise ValueError unless both parts fit the flow and the contacts."""
-    require_shapes(flow_part, {name: tuple(flow.cells) for name in _FLOW}, "flow")
+    require_shapes(flow_part, {name: array.shape for name, array in flow.checkpoint().items()}, "flow")
     count = contacts.num_particles()
     require_shapes(contact_part, {name: (count, n) for name, n in _CONTACTS.items()}, "contacts")
 
 
 def restore(flow: Any, flow_part: State, contacts: Any, contact_part: State) -> None:
-    """Take over what require_valid() accepted; the bodies of the flow must be in place already.
-
-    Masses and inertias of the particles go back to their defaults.
-    """
-    flow.set_state(*(flow_part[name] for name in ("u", "v", "w")))
-    flow.set_field("p", flow_part["p"])
+    """Take over what require_valid() accepted. Masses and inertias of the particles go back to defaults."""
+    flow.restore(flow_part)
     scales = contacts.get_scales()
     contacts.set_positions(contact_part["positions"])
     contacts.set_scales(scales)

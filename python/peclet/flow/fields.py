@@ -6,6 +6,7 @@ What a call returns is a copy.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -102,6 +103,29 @@ class Fields(Part):
         """
         components = zip(_COMPONENTS, (u, v, w), strict=True)
         self._assign_velocity(**{c: _checks.field(array, c, self._cells) for c, array in components})
+
+    def checkpoint(self) -> dict[str, Array]:
+        """Everything that the flow needs to go on as if it had not stopped, as named arrays.
+
+        u, v, w, p; u_previous, v_previous, w_previous and potential, the past of the time scheme; clock;
+        bodies. Parameters, sides and the scene are not part of it.
+        """
+        return self._core.checkpoint()
+
+    def restore(self, state: Mapping[str, ArrayLike]) -> None:
+        """Go on from what checkpoint() returned, bit by bit, in a solver set up by the same calls.
+
+        ValueError where names, shapes or numbers do not fit; nothing has changed then.
+        """
+        expected = self._core.checkpoint()
+        if set(state) != set(expected):
+            raise ValueError(f"state: expected {sorted(expected)}, found {sorted(state)}")
+        arrays = {}
+        for name, own in expected.items():
+            arrays[name] = _checks.field(state[name], f"state[{name!r}]", own.shape)
+        self._core.restore(arrays)
+        self._status.has_solid = True
+        self._status.has_loads = self._status.has_budget = False
 
     def max_open_divergence(self) -> float:
         """Largest net flux out of an open cell over its volume, moving walls included."""
