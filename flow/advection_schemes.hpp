@@ -6,6 +6,13 @@
 
 namespace peclet::flow {
 
+/// q_f = q_U, first order.
+struct FirstUpwindScheme {
+  KOKKOS_INLINE_FUNCTION static Real face_value(Real /*far*/, Real upwind, Real /*downwind*/) {
+    return upwind;
+  }
+};
+
 /// q_f = 3/2 q_U - 1/2 q_UU, second order.
 struct SecondUpwindScheme {
   KOKKOS_INLINE_FUNCTION static Real face_value(Real far, Real upwind, Real /*downwind*/) {

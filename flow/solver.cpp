@@ -38,7 +38,8 @@ Solver::Solver(const Grid& grid)
       divergence_("flow::divergence", Layout(grid.cells)),
       residual_("flow::residual", Layout(grid.cells)),
       viscous_solver_(Layout(grid.cells)),
-      pressure_solver_(grid, PressureSides{}) {}
+      pressure_solver_(grid, PressureSides{}),
+      scalars_(grid) {}
 
 void Solver::change_settings(const Settings& settings) { settings_ = settings; }
 
@@ -69,6 +70,7 @@ void Solver::step() {
   times_ = {};
   times_.geometry = geometry_time;
 
+  scalars_.prepare(scalar_flow(velocity_));
   balance_body_force();
   MomentumTerms terms = momentum_terms();
   const Real velocity_scale = extrapolate_velocity(velocity_plan_, velocity_rows_, velocity_, previous_,
@@ -86,6 +88,7 @@ void Solver::step() {
   project_velocity(velocity_scale, terms.implicit_weight);
   impose_body_motion();
   fill_velocity(velocity_, 1);
+  carry_scalars(terms.step_ratio > 0 && boundary_.cut_cells().count == 0);
 
   previous_time_step_ = settings_.time_step;
   time_ += settings_.time_step;
@@ -136,6 +139,7 @@ void Solver::predict_velocity(const MomentumTerms& terms, Real velocity_scale) {
       const Stopwatch watch(times_.momentum);
       compute_momentum_residual(c, terms, velocity_plan_[c], velocity_rows_[c], fixed_rows, moving_rows,
                                 residual_);
+      if (scalars_.has_buoyancy()) scalars_.add_buoyancy(c, terms.time_step, velocity_rows_[c], residual_);
     }
     Real left_over = 0;
     {
@@ -200,6 +204,36 @@ void Solver::project_velocity(Real velocity_scale, Real implicit_weight) {
   }
 }
 
+ScalarFlow Solver::scalar_flow(const FaceVector<Real>& carrier) const {
+  return {boundary_.solid(), boundary_.open(), carrier, boundary_.cut_cells(), sides_, bodies_.count()};
+}
+
+void Solver::carry_scalars(bool old_velocity_counts) {
+  if (scalars_.count() == 0) return;
+  if (old_velocity_counts) {  // the mean of old and new: second order in time
+    extrapolate_velocity(velocity_plan_, velocity_rows_, velocity_, previous_, -1, extrapolated_);
+    fill_velocity(extrapolated_, 1);
+  }
+  scalars_.advance(scalar_flow(old_velocity_counts ? extrapolated_ : velocity_), settings_.time_step);
+}
+
+void Solver::prepare_scalars() {
+  take_requested_sides();
+  if (geometry_stale_ || !built_) update_geometry();
+  fill_velocity(velocity_, 1);
+  scalars_.prepare(scalar_flow(velocity_));
+}
+
+void Solver::advance_scalars() {
+  prepare_scalars();
+  carry_scalars(false);
+}
+
+Real3 Solver::mean_scalar_flux(int scalar) {
+  prepare_scalars();
+  return scalars_.mean_flux(scalar, scalar_flow(velocity_));
+}
+
 const std::vector<BodyLoad>& Solver::loads() const {
   require_state(steps_ > 0, "hydro_force_torque_reaction(): call step() first");
   return loads_;
@@ -254,7 +288,7 @@ Index Solver::image_overlap_cells() {
 std::size_t Solver::bytes() const {
   const std::size_t cells = velocity_.x.array().extent(0);
   return cells * (9 + 4) * sizeof(Real) + viscous_solver_.bytes() + pressure_solver_.bytes() +
-         boundary_.bytes();
+         boundary_.bytes() + scalars_.bytes();
 }
 
 }  // namespace peclet::flow

@@ -12,6 +12,7 @@
 #include "flow/immersed_boundary.hpp"
 #include "flow/momentum.hpp"
 #include "flow/pressure_solver.hpp"
+#include "flow/scalars.hpp"
 #include "flow/settings.hpp"
 #include "flow/viscous_solver.hpp"
 
@@ -68,6 +69,15 @@ class Solver {
   double time() const { return time_; }
   long number_of_steps() const { return steps_; }
 
+  // scalars
+  Scalars& scalars() { return scalars_; }
+  const Scalars& scalars() const { return scalars_; }
+  /// Advance the scalars alone, carried by the present velocity; step() does this with the flow.
+  void advance_scalars();
+  /// Walls, states and ghosts of the scalars as the present geometry wants them.
+  void prepare_scalars();
+  Real3 mean_scalar_flux(int scalar);
+
   // results
   const std::vector<BodyLoad>& loads() const;
   const SolverReport& velocity_report() const { return velocity_report_; }
@@ -119,6 +129,8 @@ class Solver {
   void promote_moved_bodies();
   void geometry_rebuilt();
   MomentumTerms momentum_terms() const;
+  ScalarFlow scalar_flow(const FaceVector<Real>& carrier) const;
+  void carry_scalars(bool old_velocity_counts);
 
   Grid grid_;
   DomainSides sides_, requested_sides_;
@@ -136,6 +148,7 @@ class Solver {
   Field<Real> pressure_, potential_, divergence_, residual_, samples_;
   ViscousSolver viscous_solver_;
   PressureSolver pressure_solver_;
+  Scalars scalars_;
   LoadCollector load_collector_;
   std::vector<BodyLoad> loads_;
   SolverReport velocity_report_, pressure_report_;

@@ -52,6 +52,7 @@ void Solver::geometry_rebuilt() {
     velocity_rows_[c] = velocity_rows(boundary_.rows(), sides_, grid_.cells, c);
     velocity_plan_[c] = SweepPlan(grid_.cells, velocity_rows_[c].box, periodic.axis);
   }
+  scalars_.geometry_changed();
 }
 
 void Solver::velocity_changed() {
@@ -159,6 +160,7 @@ void Solver::update_geometry() {
   take_requested_poses();
   boundary_.update(bodies_, pressure_);
   pressure_solver_.update_open_fractions(boundary_.changed());
+  if (!boundary_.changed().empty()) scalars_.geometry_changed();
   impose_body_motion();
   geometry_stale_ = false;
   wall_velocity_stale_ = false;

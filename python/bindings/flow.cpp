@@ -6,6 +6,7 @@
 
 #include "flow/solver.hpp"
 #include "python/bindings/arrays.hpp"
+#include "python/bindings/flow_scalars.hpp"
 #include "python/bindings/runtime.hpp"
 
 namespace nb = nanobind;
@@ -433,4 +434,5 @@ NB_MODULE(_flow, m) {
   define_sides(solver);
   define_geometry(solver);
   define_results(solver);
+  define_scalars(m, solver);
 }

@@ -244,7 +244,7 @@ def test_order_of_calls():
         ("set_surface_tension", "two-phase"),
         ("apply_phase_change", "phase change"),
         ("set_porous_continuity", "porous"),
-        ("add_scalar", "scalar"),
+        ("set_scalar_solid", "conjugate"),
         ("set_property_model", "variable fluid properties"),
         ("set_collocated_scheme", "collocated"),
     ],

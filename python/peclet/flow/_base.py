@@ -17,7 +17,7 @@ _ABSENT = {
     "porous media": r"porous|drag|divergence_source|divergence_sink|mass_flux|superficial_velocity",
     "a collocated grid": r"[Cc]ollocated|[Cc]olocated|ghost_projection|face_interp",
     "variable fluid properties": r"propert|density_mode|rho_face|cell_force",
-    "scalar transport": r"scalar",
+    "conjugate transfer into solids": r"scalar_solid|scalar_facets|scalar_census|scalar_geometry",
     "slip on bodies": r"slip_",
     "implicit advection": r"implicit_advection|deferred_correction",
     "distributed grids": r"decomposition|exchange_field|comm_avoiding",

@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 from peclet import _checks
 from peclet.flow import _flow
-from peclet.flow._base import Part, SolverReport, Status
+from peclet.flow._base import SolverReport, Status
+from peclet.flow.scalars import ScalarInstruments
 
 
-class Instruments(Part):
+class Instruments(ScalarInstruments):
     """Available on Solver.diagnostics and, as in older scripts, on Solver itself."""
 
     @property

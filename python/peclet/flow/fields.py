@@ -57,17 +57,22 @@ class Fields(Part):
 
     def field_names(self) -> list[str]:
         """Names that get_field() knows."""
-        return list(_NAMES)
+        return [*_NAMES, *self._core.scalar_names]
 
     def has_field(self, name: str) -> bool:
         """Whether get_field() knows this name."""
         if not isinstance(name, str):
             raise _checks.wrong_type("name", "a name", name)
-        return name in _NAMES
+        return name in self.field_names()
 
     def get_field(self, name: str) -> Array:
-        """Copy of the field 'u', 'v', 'w', 'p' or 'sdf' (signed distance, negative in solid)."""
-        name = _checks.choice(name, "name", _NAMES)
+        """Copy of the field 'u', 'v', 'w', 'p', 'sdf' (signed distance, negative in solid), or of a scalar.
+
+        In solid cells a scalar is that of the wall, where it is given, else an extension of the fluid's.
+        """
+        name = _checks.choice(name, "name", self.field_names())
+        if name in self._core.scalar_names:
+            return self._core.scalar(name)
         if name == "p":
             return self.get_p()
         if name == "sdf":
@@ -75,14 +80,19 @@ class Fields(Part):
         return self._velocity(_COMPONENTS.index(name))
 
     def set_field(self, name: str, array: ArrayLike) -> None:
-        """Overwrite 'u', 'v', 'w' or 'p'. Any real dtype and memory order; the shape must be (nx, ny, nz)."""
+        """Overwrite 'u', 'v', 'w', 'p' or a scalar.
+
+        Any real dtype and memory order; the shape must be (nx, ny, nz).
+        """
         if name == "sdf":
             raise _checks.wrong_value(
                 "name", "'u', 'v', 'w' or 'p' (the distance is given by set_solid)", name
             )
-        name = _checks.choice(name, "name", ("u", "v", "w", "p"))
+        name = _checks.choice(name, "name", ("u", "v", "w", "p", *self._core.scalar_names))
         values = _checks.field(array, "array", self._cells)
-        if name == "p":
+        if name in self._core.scalar_names:
+            self._core.assign_scalar(name, values)
+        elif name == "p":
             self._core.assign_pressure(values)
         else:
             self._assign_velocity(**{name: values})

@@ -19,13 +19,14 @@ from peclet.flow.diagnostics import Instruments, SolverDiagnostics, _warn_reacti
 from peclet.flow.fields import Fields
 from peclet.flow.geometry import Geometry
 from peclet.flow.parameters import Parameters
+from peclet.flow.scalars import Scalars
 
 _LARGEST = 2**20  # cells along one axis
 _BYTES_PER_CELL = 200  # at least
 _COURANT_LIMIT = 1.0
 
 
-class Solver(Parameters, Boundaries, Geometry, Fields, Instruments):
+class Solver(Parameters, Boundaries, Geometry, Fields, Scalars, Instruments):
     """Incompressible flow in a box, periodic unless set_domain_bc() says otherwise, around fixed and moving
     bodies.
 
@@ -158,6 +159,10 @@ class Solver(Parameters, Boundaries, Geometry, Fields, Instruments):
             _warn_cap("velocity", core.velocity_iteration_limit, core.velocity_tolerance)
         if not self.pressure_report.converged:
             _warn_cap("pressure", core.pressure_iteration_limit, core.pressure_tolerance)
+        for name in core.scalar_names:
+            report = self.scalar_report(name)
+            if not report.converged:
+                _warn_cap(f"scalar {name!r}", report.iterations, core.scalar_tolerance(name))
 
     def step_adaptive(
         self, cfl_target: float = 0.4, capillary_cfl: float = 0.4, dt_max: float = math.inf
