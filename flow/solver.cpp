@@ -204,36 +204,6 @@ void Solver::project_velocity(Real velocity_scale, Real implicit_weight) {
   }
 }
 
-ScalarFlow Solver::scalar_flow(const FaceVector<Real>& carrier) const {
-  return {boundary_.solid(), boundary_.open(), carrier, boundary_.cut_cells(), sides_, bodies_.count()};
-}
-
-void Solver::carry_scalars(bool old_velocity_counts) {
-  if (scalars_.count() == 0) return;
-  if (old_velocity_counts) {  // the mean of old and new: second order in time
-    extrapolate_velocity(velocity_plan_, velocity_rows_, velocity_, previous_, -1, extrapolated_);
-    fill_velocity(extrapolated_, 1);
-  }
-  scalars_.advance(scalar_flow(old_velocity_counts ? extrapolated_ : velocity_), settings_.time_step);
-}
-
-void Solver::prepare_scalars() {
-  take_requested_sides();
-  if (geometry_stale_ || !built_) update_geometry();
-  fill_velocity(velocity_, 1);
-  scalars_.prepare(scalar_flow(velocity_));
-}
-
-void Solver::advance_scalars() {
-  prepare_scalars();
-  carry_scalars(false);
-}
-
-Real3 Solver::mean_scalar_flux(int scalar) {
-  prepare_scalars();
-  return scalars_.mean_flux(scalar, scalar_flow(velocity_));
-}
-
 const std::vector<BodyLoad>& Solver::loads() const {
   require_state(steps_ > 0, "hydro_force_torque_reaction(): call step() first");
   return loads_;
