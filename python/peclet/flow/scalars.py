@@ -179,13 +179,15 @@ class Scalars(ScalarCalls):
         """Condition on a side of the box ('-x', '+x', ... or 0 to 5) that is not periodic.
 
         'dirichlet': value of the scalar there, also of what flows in; an inflow needs it. 'neumann':
-        diffusive flux into the fluid per area; 0, the default of other sides, is zero gradient. An array has one entry per face of
-        the side, of shape (ny, nz), (nx, nz) or (nx, ny).
+        diffusive flux into the fluid per area; 0, the default of other sides, is zero gradient. An array has
+        one entry per face of the side, of shape (ny, nz), (nx, nz) or (nx, ny).
         """
         name = self._scalar(name)
         number = _face(face)
         if self._core.side(number // 2, number % 2)[0] == _flow.SideKind.PERIODIC:
-            raise _checks.wrong_value("face", "a side that set_domain_bc() has made other than periodic", face)
+            raise _checks.wrong_value(
+                "face", "a side that set_domain_bc() has made other than periodic", face
+            )
         condition = _CONDITIONS[_checks.choice(type, "type", tuple(_CONDITIONS))]
         shape = [n for axis, n in enumerate(self._cells) if axis != number // 2]
         uniform = np.ndim(value) == 0

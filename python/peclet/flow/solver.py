@@ -162,7 +162,9 @@ class Solver(Parameters, Boundaries, Geometry, Fields, Scalars, Instruments):
         for name in core.scalar_names:
             report = self.scalar_report(name)
             if not report.converged:
-                _warn_cap(f"scalar {name!r}", report.iterations, core.scalar_tolerance(name))
+                _warn_cap(
+                    f"scalar {name!r}", report.iterations, core.scalar_tolerance(name), "scalar_report()"
+                )
 
     def step_adaptive(
         self, cfl_target: float = 0.4, capillary_cfl: float = 0.4, dt_max: float = math.inf
@@ -252,11 +254,11 @@ class Solver(Parameters, Boundaries, Geometry, Fields, Scalars, Instruments):
         )
 
 
-def _warn_cap(solve: str, cap: int, tolerance: float) -> None:
+def _warn_cap(solve: str, cap: int, tolerance: float, report: str | None = None) -> None:
     # Without the residual: Python shows the same text once, not every step.
     warnings.warn(
         f"step(): the {solve} solve met its cap of {cap} iterations before its tolerance {tolerance:g}; "
-        f"{solve}_report has the residual",
+        f"{report or solve + '_report'} has the residual",
         RuntimeWarning,
         stacklevel=3,
     )
