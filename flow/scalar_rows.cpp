@@ -16,9 +16,10 @@ constexpr Real smallest_distance_in_cut_cell = 0.5;
 /// What lies in one direction from a cell.
 struct Neighbor {
   bool is_link = false, is_wall = false;
-  Real opening = 0;   // of the face between
-  Real distance = 1;  // in spacings
-  Real value = 0;     // of a wall
+  bool is_regular = false;  // a wall, or a link between whole cells
+  Real opening = 0;         // of the face between
+  Real distance = 1;        // in spacings
+  Real value = 0;           // of a wall
   int giver = no_owner;
 };
 
@@ -53,14 +54,15 @@ struct RowBuilder {
       result.opening = is_cut ? opening(axis, high, cell, p) : 1;
       result.giver = side_giver(axis, high);
       result.is_wall = geometry.sides.side[axis][high].condition == ScalarCondition::Value;
+      result.is_regular = result.is_wall;
       result.value = geometry.sides.value(axis, high, cell);
       result.distance = 0.5;
       return result;
     }
     const Index q = high ? p + state.layout().stride(axis) : p - state.layout().stride(axis);
     if (state[q] != cell_state::solid) {
-      const bool is_regular = !is_cut && state[q] == cell_state::whole;
-      result.opening = is_regular ? 1 : opening(axis, high, cell, p);
+      result.is_regular = !is_cut && state[q] == cell_state::whole;
+      result.opening = result.is_regular ? 1 : opening(axis, high, cell, p);
       result.is_link = result.opening > 0;
       return result;
     }
@@ -70,7 +72,7 @@ struct RowBuilder {
     y[axis] += (high ? 1 : -1) * geometry.solid.grid.spacing[axis];
     const Real crossing = wall_crossing(geometry.solid, owner, geometry.solid.owner[p], x, y);
     const Real least = is_cut ? smallest_distance_in_cut_cell : smallest_wall_distance;
-    result.is_wall = true;
+    result.is_wall = result.is_regular = true;
     result.opening = is_cut ? opening(axis, high, cell, p) : 1;
     result.distance = crossing > least ? crossing : least;
     result.value = geometry.wall(owner).value;
@@ -81,9 +83,7 @@ struct RowBuilder {
   /// Coefficients along one axis.
   KOKKOS_INLINE_FUNCTION void fill_axis(Index row, int axis, const Neighbor (&n)[2], Index p) const {
     const Real fluid = state[p] == cell_state::cut ? static_cast<Real>(volume[p]) : 1;
-    bool is_regular = fluid == 1 && (n[0].is_wall || n[1].is_wall);
-    for (int s = 0; s < 2; ++s)
-      is_regular = is_regular && (n[s].is_wall || n[s].is_link) && n[s].opening == 1;
+    const bool is_regular = state[p] == cell_state::whole && n[0].is_regular && n[1].is_regular;
     const Real total = Kokkos::fmax(n[0].distance + n[1].distance, narrowest_stencil);
     for (int s = 0; s < 2; ++s) {
       const int d = 2 * axis + s;

@@ -7,6 +7,7 @@
 #include "core/error.hpp"
 #include "core/field_transfer.hpp"
 #include "core/halo.hpp"
+#include "flow/scalar_steady.hpp"
 
 namespace peclet::flow {
 namespace {
@@ -52,6 +53,18 @@ bool any_value_given(const ScalarRows& rows) {
 }
 
 }  // namespace
+
+void add_buoyant_change(const ScalarFields& fields, int axis, Real strength, Real ratio, Real reference,
+                        const RowRanges& rows, const Field<Real>& residual) {
+  const Field<Real> value = fields.value, previous = fields.previous, target = residual;
+  for_each_cell(
+      "flow::add_buoyancy", rows, KOKKOS_LAMBDA(int i, int j, int k) {
+        const Index p = value.layout()(i, j, k), q = p - value.layout().stride(axis);
+        const Real mean = 0.5 * (value[p] + value[q]);
+        const Real change = mean - 0.5 * (previous[p] + previous[q]);
+        target[p] += strength * (mean + ratio * change - reference);
+      });
+}
 
 int Scalars::find(const std::string& name) const {
   for (int n = 0; n < count(); ++n)
@@ -226,16 +239,47 @@ void Scalars::add_buoyancy(int c, Real time_step, const RowRanges& rows, const F
   const Real strength = -time_step * buoyancy_.expansion * buoyancy_.gravity[c];
   if (strength == 0) return;
   const Scalar& scalar = (*this)[buoyancy_.scalar];
-  const Field<Real> value = scalar.fields.value, previous = scalar.fields.previous, target = residual;
   const Real ratio = scalar.previous_time_step > 0 ? 0.5 * time_step / scalar.previous_time_step : 0;
-  const Real reference = buoyancy_.reference;
-  for_each_cell(
-      "flow::add_buoyancy", rows, KOKKOS_LAMBDA(int i, int j, int k) {
-        const Index p = value.layout()(i, j, k), q = p - value.layout().stride(c);
-        const Real mean = 0.5 * (value[p] + value[q]);
-        const Real change = mean - 0.5 * (previous[p] + previous[q]);
-        target[p] += strength * (mean + ratio * change - reference);
-      });
+  add_buoyant_change(scalar.fields, c, strength, ratio, buoyancy_.reference, rows, residual);
+}
+
+void Scalars::solve_steady(int n, const ScalarFlow& flow) {
+  /// Passes over the limited fluxes, and how far each solves the equations that it has made linear.
+  constexpr int most_passes = 100;
+  constexpr Real reduction_per_pass = 1e-3;
+  constexpr Real rounding = 1e-9, smallest = 1e-300;
+  prepare(flow);
+  Scalar& scalar = (*this)[n];
+  ScalarFields& f = scalar.fields;
+  ScalarTerms t = terms(scalar, flow, 1);
+  SteadySystem system(f.value.layout());
+  t.time_step = system.set(t, scalar.rows);
+  const Real volume = sum_in_fluid(f, Field<Real>());
+  scalar.report = {};
+  const Real root = std::sqrt(static_cast<Real>(grid_.number_of_cells()));
+  Real first = 0;
+  for (int pass = 0;; ++pass) {
+    compute_steady_residual(t, plan_, scalar.rows, residual_);
+    const Real norm = norm_of(residual_);
+    require_state(std::isfinite(norm),
+                  "solve_scalar_steady(): scalar '" + scalar.name + "' met a value that is not finite");
+    require_state(!scalar.is_conservative || std::abs(sum_in_fluid(f, residual_)) <= rounding * root * norm,
+                  "solve_scalar_steady(): expected sources and fluxes of scalar '" + scalar.name +
+                      "' that balance, or a value on a wall or side, found neither: no steady state");
+    first = std::max(first, norm);
+    scalar.report.residual = norm / std::max({first, root * scalar_spread(f, f.value).largest, smallest});
+    scalar.report.converged = scalar.report.residual <= scalar.settings.tolerance;
+    if (scalar.report.converged || pass == most_passes || norm == 0) break;
+    scalar.report.iterations +=
+        system.solve(residual_, correction_, reduction_per_pass, scalar.settings.iteration_limit);
+    add_in_fluid(f, correction_, scalar.is_conservative ? -sum_in_fluid(f, correction_) / volume : 0);
+    fill(scalar, f.value);
+  }
+  correction_.fill(0);
+  sums_.reset(flow.bodies + givers_besides_bodies);
+  add_wall_exchange(steady_terms(t), scalar.rows, correction_, flow.solid.owner, flow.bodies, sums_);
+  scalar.given = sums_.totals();
+  scalar.value_changed = true;
 }
 
 Real3 Scalars::mean_flux(int n, const ScalarFlow& flow) const {

@@ -27,6 +27,11 @@ struct Buoyancy {
   Real3 gravity{0, 0, 0};
 };
 
+/// residual += strength (c - reference) at the faces along axis, c the mean of both cells plus ratio times
+/// its last change.
+void add_buoyant_change(const ScalarFields& fields, int axis, Real strength, Real ratio, Real reference,
+                        const RowRanges& rows, const Field<Real>& residual);
+
 struct Scalar {
   std::string name;
   ScalarSettings settings;
@@ -66,6 +71,8 @@ class Scalars {
   /// Brings walls, sides, states and ghosts up to date. Throws if an inflow brings an unknown value.
   void prepare(const ScalarFlow& flow);
   void advance(const ScalarFlow& flow, Real time_step);
+  /// Solves for the steady state that the flow as it is leads to.
+  void solve_steady(int n, const ScalarFlow& flow);
 
   bool has_buoyancy() const { return buoyancy_.scalar >= 0; }
   /// residual += dt times the buoyant acceleration along c at the middle of the step.

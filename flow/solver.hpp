@@ -77,6 +77,8 @@ class Solver {
   /// Walls, states and ghosts of the scalars as the present geometry wants them.
   void prepare_scalars();
   Real3 mean_scalar_flux(int scalar);
+  /// The steady state of a scalar in the present velocity; bodies must rest.
+  void solve_scalar_steady(int scalar);
 
   // results
   const std::vector<BodyLoad>& loads() const;

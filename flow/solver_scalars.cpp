@@ -1,4 +1,5 @@
 // What the flow solver does for the scalars that it carries.
+#include "core/error.hpp"
 #include "flow/solver.hpp"
 
 namespace peclet::flow {
@@ -26,6 +27,13 @@ void Solver::prepare_scalars() {
 void Solver::advance_scalars() {
   prepare_scalars();
   carry_scalars(false);
+}
+
+void Solver::solve_scalar_steady(int scalar) {
+  prepare_scalars();
+  require_state(boundary_.cut_cells().count == 0,
+                "solve_scalar_steady(): expected bodies at rest, found moving ones");
+  scalars_.solve_steady(scalar, scalar_flow(velocity_));
 }
 
 Real3 Solver::mean_scalar_flux(int scalar) {

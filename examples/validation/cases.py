@@ -24,6 +24,8 @@ from examples.validation.comparisons import (
     towed_rows,
     towed_with_inertia,
 )
+from examples.validation.heat import cavity_rows as heated_cavity_rows
+from examples.validation.heat import sphere_rows
 
 
 @dataclasses.dataclass(frozen=True)
@@ -129,5 +131,19 @@ CASES = (
         "oscillating cylinder",
         small=lambda: oscillating_cylinder(12, 10, 2, 0.1),
         full=lambda curves: oscillating_cylinder(32, 16, 6, 0.04, curves),
+    ),
+    Case(
+        "heated sphere",
+        small=lambda: sphere_rows(16, 5e-3),
+        full=lambda curves: sphere_rows(48, 1e-3),
+    ),
+    Case(
+        "heated cavity",
+        small=lambda: heated_cavity_rows(16, 1000, 3e-3, 0.03) + heated_cavity_rows(24, 10000, 5e-3, 0.03),
+        full=lambda curves: (
+            heated_cavity_rows(40, 1000, 5e-3, 0.01)
+            + heated_cavity_rows(40, 10000, 5e-3, 0.01)
+            + heated_cavity_rows(64, 100000, 5e-3, 0.01)
+        ),
     ),
 )

@@ -167,6 +167,14 @@ void define_scalars(nb::module_& m, nb::class_<Solver>& solver) {
       .def("scalar", &values, "name"_a)
       .def("assign_scalar", &assign, "name"_a, "array"_a)
       .def("advance_scalars", &Solver::advance_scalars, nb::call_guard<nb::gil_scoped_release>())
+      .def(
+          "solve_scalar_steady",
+          [](Solver& s, const std::string& name) {
+            const int n = index_of(s, name);
+            const nb::gil_scoped_release release;
+            s.solve_scalar_steady(n);
+          },
+          "name"_a)
       .def("scalar_report", &report, "name"_a)
       .def("scalar_diffusivity",
            [](const Solver& s, const std::string& name) {

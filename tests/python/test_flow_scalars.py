@@ -227,6 +227,47 @@ def test_scalars_can_advance_alone():
     assert np.ptp(solver.get_field("c")) < np.ptp(pattern(solver))
 
 
+@pytest.mark.parametrize("scheme", ["fou", "koren"])
+def test_the_steady_state_is_the_one_that_steps_lead_to(scheme):
+    solver = flow.Solver((24, 12, 1), extent=(2, 1, 0.1))
+    solver.set_domain_bc("-x", "inflow", [1, 0, 0])
+    solver.set_domain_bc("+x", "outflow")
+    for face in ("-y", "+y"):
+        solver.set_domain_bc(face, "slip")
+    solver.set_scene(*spheres(((0.7, 0.4, 0.05), 0.2)))
+    solver.set_solid_from_scene()
+    solver.set_mu(0.1)
+    solver.set_dt(0.02)
+    solver.add_scalar("c", 0.05, scheme)
+    solver.set_scalar_bc("c", "-x", "dirichlet", 1.0)
+    solver.set_scalar_wall("c", "dirichlet", 3.0)
+    for _ in range(400):
+        solver.step()
+    marched, flux = solver.get_field("c"), solver.scalar_wall_flux("c")
+    for start in (marched, np.zeros((24, 12, 1))):
+        solver.set_field("c", start)
+        solver.solve_scalar_steady("c")
+        assert solver.diagnostics.scalar_report("c").converged
+        np.testing.assert_allclose(solver.get_field("c"), marched, atol=2e-4)
+        assert solver.scalar_wall_flux("c") == pytest.approx(flux, rel=1e-3)
+    sides = solver.scalar_budget("c")["sides"]
+    assert sides.sum() + flux.sum() == pytest.approx(0, abs=1e-3 * flux[0])
+
+
+def test_a_steady_state_keeps_the_amount_where_no_value_is_given():
+    solver = box(((4.3, 3.6, 2.2), 2.1))
+    solver.set_field("c", pattern(solver))
+    solver.step()
+    amount = solver.scalar_budget("c")["amount"]
+    solver.solve_scalar_steady("c")
+    assert solver.scalar_budget("c")["amount"] == pytest.approx(amount, rel=1e-12)
+    assert np.ptp(solver.get_field("c")) < 1e-6
+    solver.set_scalar_source("c", 1.0)
+    with pytest.raises(RuntimeError, match="no steady state"):
+        solver.solve_scalar_steady("c")
+    assert solver.scalar_budget("c")["amount"] == pytest.approx(amount, rel=1e-12)
+
+
 def test_reports_and_caps():
     solver = box(diffusivity=50.0)
     solver.set_field("c", pattern(solver))

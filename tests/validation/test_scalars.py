@@ -4,93 +4,52 @@ import numpy as np
 import pytest
 from peclet import flow
 
-from tests.python.flow_scenes import spheres
-from tests.validation.helpers import Row, orders
-
-# A spherical shell of fluid between a small body and the inside of a hollow solid, off the lattice.
-INNER, OUTER = 0.2, 0.45
-CENTER = np.array([0.513, 0.521, 0.483])
+from examples.validation.heat import INNER, OUTER, conduct, hot_sphere, hot_sphere_exact
+from examples.validation.results import orders
 
 
-def shell(cells, inner, outer, *, change=1e-6):
-    """Steady conduction with diffusivity 1 and conditions (type, value) on both walls: field and balances.
-
-    Returns the field at fluid cells, their radii, and the amounts per time from the inner and outer wall.
-    """
-    solver = flow.Solver((cells, cells, cells), extent=(1, 1, 1))
-    x, y, z = solver.cell_centers()
-    squares = np.add.outer(np.add.outer((x - CENTER[0]) ** 2, (y - CENTER[1]) ** 2), (z - CENTER[2]) ** 2)
-    radius = np.sqrt(squares)
-    solver.set_scene(*spheres((CENTER, INNER)))
-    solver.set_solid(OUTER - radius)
-    solver.add_scalar("t", 1.0, iters=2000)
-    solver.set_scalar_wall("t", *outer)
-    solver.set_scalar_wall("t", *inner, instance=0)
-    solver.set_dt(0.05)
-    old = solver.get_field("t")
-    for _ in range(300):
-        solver.advance_scalars()
-        new = solver.get_field("t")
-        if np.abs(new - old).max() < change:
-            break
-        old = new
-    else:
-        raise AssertionError("not steady")
-    fluid = (radius > INNER) & (radius < OUTER)
-    budget = solver.scalar_budget("t")
-    return new[fluid], radius[fluid], budget["bodies"][0], budget["sampled"]
-
-
-def value_outside_value(cells):
-    """Unit difference: largest and rms error, and the Nusselt number Q / (pi d D) of the inner sphere."""
-    found, r, given, taken = shell(cells, ("dirichlet", 1.0), ("dirichlet", 0.0))
-    error = np.abs(found - (1 / r - 1 / OUTER) / (1 / INNER - 1 / OUTER))
-    return error.max(), np.sqrt(np.mean(error**2)), given / (2 * np.pi * INNER), given + taken
+def test_heat_that_enters_a_shell_leaves_it():
+    shell = hot_sphere(16)
+    assert np.abs(shell.difference(hot_sphere_exact(shell.radius))).max() <= 0.01
+    assert shell.inner_flux + shell.outer_flux == pytest.approx(0, abs=1e-5 * shell.inner_flux)
 
 
 def flux_inside(cells):
-    """Unit flux from the inner sphere."""
-    found, r, given, _ = shell(cells, ("neumann", 1.0), ("dirichlet", 0.0))
-    error = np.abs(found - INNER**2 * (1 / r - 1 / OUTER))
-    return error.max() / INNER, given / (4 * np.pi * INNER**2) - 1
+    """Unit flux from the inner sphere: largest error, and error of the area."""
+    shell = conduct(cells, ("neumann", 1.0), ("dirichlet", 0.0))
+    error = shell.difference(INNER**2 * (1 / shell.radius - 1 / OUTER))
+    return np.abs(error).max() / INNER, shell.inner_flux / (4 * np.pi * INNER**2) - 1
 
 
 def flux_outside(cells):
     """Unit flux from the hollow wall."""
-    found, r, given, _ = shell(cells, ("dirichlet", 0.0), ("neumann", 1.0))
-    error = np.abs(found - OUTER**2 * (1 / INNER - 1 / r))
-    return error.max() / OUTER, given / (4 * np.pi * OUTER**2) + 1
+    shell = conduct(cells, ("dirichlet", 0.0), ("neumann", 1.0))
+    error = shell.difference(OUTER**2 * (1 / INNER - 1 / shell.radius))
+    return np.abs(error).max() / OUTER, shell.outer_flux / (4 * np.pi * OUTER**2) - 1
 
 
-def nusselt_row(cells, found, target):
-    exact = 2 / (1 - INNER / OUTER)
-    return Row(f"concentric spheres, {cells} cells", exact, found, found / exact - 1, target)
-
-
-def test_conduction_between_concentric_spheres():
-    largest, _, nusselt, rest = value_outside_value(16)
-    row = nusselt_row(16, nusselt, 5e-3)
-    assert abs(row.error) <= row.target
-    assert largest <= 0.01
-    assert abs(rest) <= 1e-5 * nusselt
-
-
-def test_flux_from_a_sphere():
-    error, area = flux_inside(16)
+@pytest.mark.parametrize("case", [flux_inside, flux_outside])
+def test_flux_from_a_wall(case):
+    error, area = case(16)
     assert error <= 0.02
     assert abs(area) <= 0.025
 
 
 @pytest.mark.slow
-def test_conduction_is_of_second_order():
-    results = [value_outside_value(cells) for cells in (12, 24, 48)]
-    assert orders([rms for _, rms, _, _ in results]).mean() >= 1.9
-    row = nusselt_row(48, results[-1][2], 1e-3)
-    assert abs(row.error) <= row.target
-    for case in (flux_inside, flux_outside):
-        errors, areas = np.transpose([case(cells) for cells in (12, 24, 48)])
-        assert orders(errors).mean() >= 1.7
-        assert orders(np.abs(areas)).mean() >= 1.8
+def test_conduction_between_values_is_of_second_order():
+    errors = []
+    for cells in (12, 24, 48):
+        shell = hot_sphere(cells)
+        errors.append(np.sqrt(np.mean(shell.difference(hot_sphere_exact(shell.radius)) ** 2)))
+    assert orders(errors).mean() >= 1.9
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("case", [flux_inside, flux_outside])
+def test_conduction_from_a_flux_is_of_second_order(case):
+    errors, areas = np.transpose([case(cells) for cells in (12, 24, 48)])
+    assert orders(errors).mean() >= 1.7
+    assert orders(areas).mean() >= 1.8
 
 
 def wave_error(cells, scheme, diffusivity):

@@ -8,6 +8,7 @@ set_field(). step() advances all scalars with the flow, at second order in time 
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from typing import Any
 
@@ -232,6 +233,23 @@ class Scalars(ScalarCalls):
         """Advance the scalars alone by dt, carried by the velocity as it is; step() does it with the flow."""
         self._require_geometry()
         self._core.advance_scalars()
+
+    def solve_scalar_steady(self, name: str) -> None:
+        """Solve for the steady state of a scalar, carried by the velocity as it is; the flow stands still.
+
+        The cap on iterations is per pass over the fluxes; scalar_report() has their sum and the residual.
+        Where no wall and no side gives a value, the amount stays what it is. Raises RuntimeError while
+        bodies move and where sources leave no steady state, and warns when there was no convergence.
+        """
+        self._require_geometry()
+        self._core.solve_scalar_steady(self._scalar(name))
+        report = SolverReport(**self._core.scalar_report(name))
+        if not report.converged:
+            warnings.warn(
+                f"solve_scalar_steady(): scalar {name!r} did not converge; scalar_report() has the residual",
+                RuntimeWarning,
+                stacklevel=2,
+            )
 
     def scalar_wall_flux(self, name: str) -> NDArray[np.float64]:
         """Amount per time that each body gave to the fluid in the last step, shape (n,).
