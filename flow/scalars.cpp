@@ -247,7 +247,7 @@ void Scalars::solve_steady(int n, const ScalarFlow& flow) {
   /// Passes over the limited fluxes, and how far each solves the equations that it has made linear.
   constexpr int most_passes = 100;
   constexpr Real reduction_per_pass = 1e-3;
-  constexpr Real rounding = 1e-9, smallest = 1e-300;
+  constexpr Real rounding = 1e-6, imbalance = 1e-7, smallest = 1e-300;
   prepare(flow);
   Scalar& scalar = (*this)[n];
   ScalarFields& f = scalar.fields;
@@ -263,11 +263,13 @@ void Scalars::solve_steady(int n, const ScalarFlow& flow) {
     const Real norm = norm_of(residual_);
     require_state(std::isfinite(norm),
                   "solve_scalar_steady(): scalar '" + scalar.name + "' met a value that is not finite");
-    require_state(!scalar.is_conservative || std::abs(sum_in_fluid(f, residual_)) <= rounding * root * norm,
+    const ScalarSpread spread = scalar_spread(f, f.value);
+    first = std::max(first, norm);
+    const Real size = std::max({first, root * (spread.largest + rounding * std::abs(spread.mean)), smallest});
+    require_state(!scalar.is_conservative || std::abs(sum_in_fluid(f, residual_)) <= imbalance * root * size,
                   "solve_scalar_steady(): expected sources and fluxes of scalar '" + scalar.name +
                       "' that balance, or a value on a wall or side, found neither: no steady state");
-    first = std::max(first, norm);
-    scalar.report.residual = norm / std::max({first, root * scalar_spread(f, f.value).largest, smallest});
+    scalar.report.residual = norm / size;
     scalar.report.converged = scalar.report.residual <= scalar.settings.tolerance;
     if (scalar.report.converged || pass == most_passes || norm == 0) break;
     scalar.report.iterations +=
