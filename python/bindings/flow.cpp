@@ -6,6 +6,7 @@
 
 #include "flow/solver.hpp"
 #include "python/bindings/arrays.hpp"
+#include "python/bindings/flow_checkpoint.hpp"
 #include "python/bindings/flow_scalars.hpp"
 #include "python/bindings/runtime.hpp"
 
@@ -299,69 +300,6 @@ void define_geometry(nb::class_<Solver>& solver) {
       .def("open_fraction", &open_fraction, "axis"_a);
 }
 
-constexpr std::int64_t motion_columns = 18;
-
-/// Everything that the flow needs to go on: fields of unknowns, clock (time, last time step, steps, whether
-/// the body force is still to be balanced), and bodies (n, 18): translation, rotation, linear and angular
-/// velocity, centre, pinned, dynamic.
-nb::dict checkpoint(Solver& solver) {
-  if (!solver.has_geometry()) solver.update_geometry();
-  nb::dict state;
-  for (const StoredField& stored : solver.stored_fields()) {
-    const Box& box = stored.box;
-    Output<double> values({box.extent(0), box.extent(1), box.extent(2)}, python::Order::Fortran);
-    copy_to_host(stored.field, box, values.data());
-    state[stored.name.c_str()] = values.release();
-  }
-  const Clock clock = solver.clock();
-  state["clock"] =
-      to_numpy(std::vector<double>{clock.time, clock.previous_time_step, static_cast<double>(clock.steps),
-                                   static_cast<double>(clock.force_unbalanced)});
-  std::vector<double> motions;
-  for (int b = 0; b < solver.number_of_bodies(); ++b) {
-    const BodyMotion m = solver.bodies().motion(b);
-    const Quaternion q = m.pose.rotation;
-    for (const Vec3& v : {m.pose.translation, Vec3{q.x, q.y, q.z}})
-      motions.insert(motions.end(), {v.x, v.y, v.z});
-    motions.push_back(q.w);
-    for (const Vec3& v : {m.twist.linear, m.twist.angular, m.center})
-      motions.insert(motions.end(), {v.x, v.y, v.z});
-    motions.push_back(m.pinned);
-    motions.push_back(m.dynamic);
-  }
-  state["bodies"] = to_numpy(motions, {solver.number_of_bodies(), motion_columns});
-  return state;
-}
-
-BodyMotion to_motion(const Input<double>& rows, Index b, double scale) {
-  const auto at = [&](Index column) { return rows[b * motion_columns + column]; };
-  const auto vector = [&](Index first) { return Vec3{at(first), at(first + 1), at(first + 2)}; };
-  BodyMotion motion;
-  motion.pose = Pose{vector(0), Quaternion{at(3), at(4), at(5), at(6)}, scale};
-  motion.twist = Twist{vector(7), vector(10)};
-  motion.center = vector(13);
-  motion.pinned = at(16) != 0;
-  motion.dynamic = at(17) != 0;
-  return motion;
-}
-
-/// The state has been checked by the caller to have the names and shapes that checkpoint() returns.
-void restore(Solver& solver, const nb::dict& state) {
-  const Input<double> clock(state["clock"], "clock", {4});
-  const Input<double> rows(state["bodies"], "bodies", {solver.number_of_bodies(), motion_columns});
-  std::vector<BodyMotion> motions;
-  for (int b = 0; b < solver.number_of_bodies(); ++b)
-    motions.push_back(to_motion(rows, b, solver.bodies()[b].pose.scale));
-  solver.restore_bodies(motions);
-  for (const StoredField& stored : solver.stored_fields()) {
-    const Box& box = stored.box;
-    const Input<double> values(state[stored.name.c_str()], stored.name,
-                               {box.extent(0), box.extent(1), box.extent(2)}, python::Order::Fortran);
-    copy_from_host(values.data(), box, stored.field);
-  }
-  solver.restore_clock({clock[0], clock[1], static_cast<long>(clock[2]), clock[3] != 0});
-}
-
 void define_results(nb::class_<Solver>& solver) {
   solver.def("step", &Solver::step, nb::call_guard<nb::gil_scoped_release>())
       .def_prop_ro("time", &Solver::time)
@@ -391,8 +329,6 @@ void define_results(nb::class_<Solver>& solver) {
              python::assign(s.pressure(), p, "p");
              s.pressure_changed();
            })
-      .def("checkpoint", &checkpoint)
-      .def("restore", &restore, "state"_a)
       .def("largest_open_divergence", &Solver::largest_open_divergence)
       .def("largest_velocity", &Solver::largest_velocity)
       .def("momentum_change",
@@ -435,4 +371,5 @@ NB_MODULE(_flow, m) {
   define_geometry(solver);
   define_results(solver);
   define_scalars(m, solver);
+  define_checkpoint(solver);
 }
