@@ -116,6 +116,15 @@ void Bodies::set_dynamic(int b) {
   stale_ = true;
 }
 
+bool BodyMotion::operator==(const BodyMotion& other) const {
+  const auto same = [](Vec3 a, Vec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; };
+  const Quaternion q = pose.rotation, r = other.pose.rotation;
+  return same(pose.translation, other.pose.translation) && q.x == r.x && q.y == r.y && q.z == r.z &&
+         q.w == r.w && pose.scale == other.pose.scale && same(twist.linear, other.twist.linear) &&
+         same(twist.angular, other.twist.angular) && same(center, other.center) && pinned == other.pinned &&
+         dynamic == other.dynamic;
+}
+
 BodyMotion Bodies::motion(int b) const {
   const Body& body = (*this)[b];
   return {body.pose, body.twist, body.center, center_pinned(b), body.dynamic};

@@ -99,6 +99,8 @@ struct BodyMotion {
   Twist twist;
   Vec3 center;
   bool pinned = false, dynamic = false;
+
+  bool operator==(const BodyMotion& other) const;
 };
 
 /// Host side: owns the instances, moves them, and hands a BodyGeometry to kernels.

@@ -110,11 +110,13 @@ std::vector<StoredField> Solver::stored_fields() const {
 }
 
 void Solver::restore_bodies(const std::vector<BodyMotion>& motions) {
+  bool same = has_geometry();
   for (std::size_t b = 0; b < motions.size(); ++b) {
+    same = same && motions[b] == bodies_.motion(static_cast<int>(b));
     bodies_.restore(static_cast<int>(b), motions[b]);
     requested_poses_[b].reset();
   }
-  build_geometry(true);
+  if (!same) build_geometry(true);
 }
 
 void Solver::restore_clock(const Clock& clock) {

@@ -8,15 +8,18 @@ from peclet.flow._base import SolverReport
 from peclet.flow._flow import AdvectionScheme
 from peclet.flow.diagnostics import SolverDiagnostics
 from peclet.flow.solver import Solver
+from peclet.flow.steady import SteadyResult, march_to_steady
 
 __all__ = [
     "AdvectionScheme",
     "Solver",
     "SolverDiagnostics",
     "SolverReport",
+    "SteadyResult",
     "execution_space",
     "finalize",
     "has_mpi",
+    "march_to_steady",
 ]
 
 execution_space: str = _flow.execution_space

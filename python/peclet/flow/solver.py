@@ -23,7 +23,8 @@ from peclet.flow.scalars import Scalars
 
 _LARGEST = 2**20  # cells along one axis
 _BYTES_PER_CELL = 200  # at least
-_COURANT_LIMIT = 1.0
+# Courant number up to which the scheme, extrapolated in time, damps the shortest waves.
+_COURANT_LIMIT = {"sou": 0.25, "koren": 0.5, "central": 0.5}
 
 
 class Solver(Parameters, Boundaries, Geometry, Fields, Scalars, Instruments):
@@ -153,8 +154,9 @@ class Solver(Parameters, Boundaries, Geometry, Fields, Scalars, Instruments):
         self._status.has_loads = True
         self._status.has_budget = True
         core = self._core
-        if core.courant_number_bound > _COURANT_LIMIT and core.advection_scheme != _flow.AdvectionScheme.NONE:
-            _warn_courant(core.courant_number)
+        limit = self._courant_limit()
+        if core.courant_number_bound > limit and core.courant_number > limit:
+            _warn_courant(core.courant_number, limit)
         if not self.velocity_report.converged:
             _warn_cap("velocity", core.velocity_iteration_limit, core.velocity_tolerance)
         if not self.pressure_report.converged:
@@ -171,14 +173,16 @@ class Solver(Parameters, Boundaries, Geometry, Fields, Scalars, Instruments):
     ) -> float:
         """Advance by a time step chosen from the velocity, and return it.
 
-        dt becomes cfl_target over the largest of sum |u_a| / h_a, at most dt_max and at most twice the last
-        one. With a fluid at rest, the present dt is kept if dt_max is infinite. capillary_cfl is accepted
-        from scripts: there is no surface tension here.
+        dt becomes cfl_target (at most 0.8 of the limit of the advection scheme, see courant_number) over the
+        largest of sum |u_a| / h_a, at most dt_max and at most twice the last one. With a fluid at rest, the
+        present dt is kept if dt_max is infinite. capillary_cfl is accepted from scripts: there is no surface
+        tension here.
         """
         target = _checks.positive(cfl_target, "cfl_target")
         _checks.positive(capillary_cfl, "capillary_cfl")
         if dt_max != math.inf:
             _checks.positive(dt_max, "dt_max")
+        target = min(target, 0.8 * self._courant_limit())
         rate = self._core.courant_number / self.dt
         wanted = target / rate if rate > 0 else (self.dt if dt_max == math.inf else dt_max)
         if self.number_of_steps > 0:
@@ -191,10 +195,14 @@ class Solver(Parameters, Boundaries, Geometry, Fields, Scalars, Instruments):
     def courant_number(self) -> float:
         """Largest of dt sum |u_a| / h_a over the cells, with the present velocity and dt.
 
-        Advection is explicit: step() warns where this exceeds 1.
+        Advection is explicit: step() warns where this exceeds the limit of the scheme, 0.25 for 'sou' and 0.5
+        for 'koren' and 'central'.
         """
         self._require_geometry()
         return self._core.courant_number
+
+    def _courant_limit(self) -> float:
+        return math.inf if self.advection_scheme is None else _COURANT_LIMIT[self.advection_scheme]
 
     @property
     def time(self) -> float:
@@ -264,14 +272,13 @@ def _warn_cap(solve: str, cap: int, tolerance: float, report: str | None = None)
     )
 
 
-def _warn_courant(number: float) -> None:
-    if number > _COURANT_LIMIT:
-        warnings.warn(
-            f"step(): advection is explicit and the Courant number {number:.2g} exceeds {_COURANT_LIMIT:g}; "
-            "reduce dt or use step_adaptive()",
-            RuntimeWarning,
-            stacklevel=3,
-        )
+def _warn_courant(number: float, limit: float) -> None:
+    warnings.warn(
+        f"step(): advection is explicit and the Courant number {number:.2g} exceeds the limit {limit:g} of "
+        "the scheme; reduce dt or use step_adaptive()",
+        RuntimeWarning,
+        stacklevel=3,
+    )
 
 
 def _cell_units(nx: Any, ny: Any, nz: Any) -> tuple[list[int], None, list[float]]:
