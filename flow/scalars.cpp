@@ -166,6 +166,14 @@ void Scalars::prepare(Scalar& scalar, const ScalarFlow& flow) {
   fill(scalar, f.previous);
 }
 
+void Scalars::restore_past(int n, Real previous_time_step) {
+  Scalar& scalar = (*this)[n];
+  scalar.previous_time_step = previous_time_step;
+  scalar.value_changed = false;
+  fill(scalar, scalar.fields.value);
+  fill(scalar, scalar.fields.previous);
+}
+
 ScalarTerms Scalars::terms(const Scalar& scalar, const ScalarFlow& flow, Real time_step) const {
   ScalarTerms terms;
   terms.grid = grid_;

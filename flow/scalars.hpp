@@ -66,6 +66,9 @@ class Scalars {
   void set_buoyancy(const Buoyancy& buoyancy) { buoyancy_ = buoyancy; }
   const Buoyancy& buoyancy() const { return buoyancy_; }
 
+  /// The fields of one scalar have been overwritten from a checkpoint, after prepare().
+  void restore_past(int n, Real previous_time_step);
+
   /// The flow has other walls.
   void geometry_changed();
   /// Brings walls, sides, states and ghosts up to date. Throws if an inflow brings an unknown value.

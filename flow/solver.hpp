@@ -29,6 +29,7 @@ struct Clock {
   Real previous_time_step = 0;  // 0: the next step has no past
   long steps = 0;
   bool force_unbalanced = true;
+  std::vector<Real> scalar_time_steps;  // previous_time_step of every scalar
 };
 
 /// A field of the state and the points of it that are unknowns.
@@ -107,8 +108,8 @@ class Solver {
   /// The pressure was written from outside: it balances the body force.
   void pressure_changed() { force_unbalanced_ = false; }
   /// State that a run needs to go on as if it had not stopped.
-  Clock clock() const { return {time_, previous_time_step_, steps_, force_unbalanced_}; }
-  std::vector<StoredField> stored_fields() const;
+  Clock clock() const;
+  std::vector<StoredField> stored_fields();
   /// Puts the bodies back and samples them; then the stored fields are to be overwritten, and last
   /// restore_clock() called.
   void restore_bodies(const std::vector<BodyMotion>& motions);

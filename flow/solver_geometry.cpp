@@ -94,7 +94,15 @@ void Solver::take_requested_sides() {
   sides_stale_ = false;
 }
 
-std::vector<StoredField> Solver::stored_fields() const {
+Clock Solver::clock() const {
+  Clock clock{time_, previous_time_step_, steps_, force_unbalanced_, {}};
+  for (int n = 0; n < scalars_.count(); ++n)
+    clock.scalar_time_steps.push_back(scalars_[n].previous_time_step);
+  return clock;
+}
+
+std::vector<StoredField> Solver::stored_fields() {
+  prepare_scalars();
   const Box cells{{0, 0, 0}, grid_.cells};
   const std::string names[3] = {"u", "v", "w"};
   std::vector<StoredField> fields;
@@ -106,6 +114,13 @@ std::vector<StoredField> Solver::stored_fields() const {
   }
   fields.push_back({"p", pressure_, cells});
   fields.push_back({"potential", potential_, cells});
+  for (int n = 0; n < scalars_.count(); ++n) {
+    const ScalarFields& scalar = scalars_[n].fields;
+    const std::string name = "scalar_" + scalars_[n].name;
+    fields.push_back({name, scalar.value, cells});
+    fields.push_back({name + "_previous", scalar.previous, cells});
+    fields.push_back({name + "_gain", scalar.gain, cells});
+  }
   return fields;
 }
 
@@ -125,6 +140,8 @@ void Solver::restore_clock(const Clock& clock) {
   previous_time_step_ = clock.previous_time_step;
   steps_ = clock.steps;
   force_unbalanced_ = clock.force_unbalanced;
+  for (int n = 0; n < scalars_.count(); ++n)
+    scalars_.restore_past(n, clock.scalar_time_steps[static_cast<std::size_t>(n)]);
 }
 
 void Solver::set_pose(int body, Vec3 translation, Quaternion rotation) {

@@ -28,9 +28,10 @@ nb::dict checkpoint(Solver& solver) {
     state[stored.name.c_str()] = values.release();
   }
   const Clock clock = solver.clock();
-  state["clock"] =
-      to_numpy(std::vector<double>{clock.time, clock.previous_time_step, static_cast<double>(clock.steps),
-                                   static_cast<double>(clock.force_unbalanced)});
+  std::vector<double> times{clock.time, clock.previous_time_step, static_cast<double>(clock.steps),
+                            static_cast<double>(clock.force_unbalanced)};
+  times.insert(times.end(), clock.scalar_time_steps.begin(), clock.scalar_time_steps.end());
+  state["clock"] = to_numpy(times);
   std::vector<double> motions;
   for (int b = 0; b < solver.number_of_bodies(); ++b) {
     const BodyMotion m = solver.bodies().motion(b);
@@ -61,7 +62,8 @@ BodyMotion to_motion(const Input<double>& rows, Index b, double scale) {
 
 /// The state has been checked by the caller to have the names and shapes that checkpoint() returns.
 void restore(Solver& solver, const nb::dict& state) {
-  const Input<double> clock(state["clock"], "clock", {4});
+  const auto scalars = static_cast<std::size_t>(solver.scalars().count());
+  const Input<double> clock(state["clock"], "clock", {static_cast<std::int64_t>(4 + scalars)});
   const Input<double> rows(state["bodies"], "bodies", {solver.number_of_bodies(), motion_columns});
   std::vector<BodyMotion> motions;
   for (int b = 0; b < solver.number_of_bodies(); ++b)
@@ -73,7 +75,9 @@ void restore(Solver& solver, const nb::dict& state) {
                                {box.extent(0), box.extent(1), box.extent(2)}, python::Order::Fortran);
     copy_from_host(values.data(), box, stored.field);
   }
-  solver.restore_clock({clock[0], clock[1], static_cast<long>(clock[2]), clock[3] != 0});
+  Clock past{clock[0], clock[1], static_cast<long>(clock[2]), clock[3] != 0, {}};
+  past.scalar_time_steps.assign(clock.data() + 4, clock.data() + 4 + scalars);
+  solver.restore_clock(past);
 }
 
 }  // namespace

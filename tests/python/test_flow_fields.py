@@ -168,6 +168,8 @@ def stream_past_a_moving_sphere():
     solver.set_mu(0.01)
     solver.set_dt(0.02)
     solver.set_advection(True)
+    solver.add_scalar("dye", 1e-3)
+    solver.set_scalar_bc("dye", "-x", "dirichlet", 1.0)
     return solver
 
 

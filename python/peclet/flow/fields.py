@@ -117,8 +117,8 @@ class Fields(Part):
     def checkpoint(self) -> dict[str, Array]:
         """Everything that the flow needs to go on as if it had not stopped, as named arrays.
 
-        u, v, w, p; u_previous, v_previous, w_previous and potential, the past of the time scheme; clock;
-        bodies. Parameters, sides and the scene are not part of it.
+        u, v, w, p; u_previous, v_previous, w_previous and potential, the past of the time scheme; the same
+        of every scalar; clock; bodies. Parameters, sides and the scene are not part of it.
         """
         return self._core.checkpoint()
 
