@@ -98,6 +98,14 @@ void apply_linearisation(const ScalarTerms& terms, const ScalarRows& rows, const
       });
 }
 
+/// Largest value, at least 0.
+Real largest_of(const Field<Real>& field) {
+  const Field<Real> values = field;
+  return max_cells(
+      "flow::steady_largest", RowRanges(field.layout().cells),
+      KOKKOS_LAMBDA(int i, int j, int k) { return values(i, j, k); });
+}
+
 Real product(const Field<Real>& a, const Field<Real>& b) {
   const Field<Real> x = a, y = b;
   return sum_cells(
@@ -182,10 +190,7 @@ Real SteadySystem::set(const ScalarTerms& terms, const ScalarRows& rows) {
   terms_ = terms;
   rows_ = rows;
   compute_diagonal(terms_, rows_, diagonal_);
-  const Field<Real> diagonal = diagonal_;
-  const Real largest = max_cells(
-      "flow::largest_diagonal", RowRanges(terms.grid.cells),
-      KOKKOS_LAMBDA(int i, int j, int k) { return diagonal(i, j, k); });
+  const Real largest = largest_of(diagonal_);
   terms_.time_step = largest > 0 ? 1 / largest : 1;
   return terms_.time_step;
 }

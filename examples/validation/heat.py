@@ -89,7 +89,7 @@ def heated_cavity(cells: int, rayleigh: int) -> Solver:
     solver.set_boussinesq("temperature", rayleigh * PRANDTL, 0.5, (0, -1, 0))
     x = solver.cell_centers()[0]
     solver.set_field("temperature", np.broadcast_to(1 - x[:, None, None], (cells, cells, 1)))
-    solver.set_dt(0.4 / cells / benchmark(rayleigh, "v_max"))
+    solver.set_dt(0.22 / cells / benchmark(rayleigh, "v_max"))
     old = 0.0
     for _ in range(100):
         for _ in range(100):

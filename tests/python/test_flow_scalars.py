@@ -268,6 +268,30 @@ def test_a_steady_state_keeps_the_amount_where_no_value_is_given():
     assert solver.scalar_budget("c")["amount"] == pytest.approx(amount, rel=1e-12)
 
 
+@pytest.mark.parametrize("kind", ["dirichlet", "neumann"])
+def test_scalars_go_on_from_a_checkpoint_bit_by_bit(kind):
+    def make():
+        solver = box(((4.3, 3.6, 2.2), 2.1, (0.06, 0, 0)))
+        solver.set_scalar_wall("c", kind, 0.5)
+        solver.set_boussinesq("c", 0.01)
+        return solver
+
+    def march(solver, first, last):
+        for step in range(first, last):
+            solver.set_instance_transform(0, (4.3 + 0.03 * step, 3.6, 2.2))
+            solver.step()
+
+    whole, first, second = make(), make(), make()
+    for solver in (whole, first):
+        solver.set_field("c", pattern(solver))
+    march(whole, 0, 7)
+    march(first, 0, 4)
+    second.restore(first.checkpoint())
+    march(second, 4, 7)
+    for name, values in whole.checkpoint().items():
+        assert np.array_equal(second.checkpoint()[name], values), name
+
+
 def test_reports_and_caps():
     solver = box(diffusivity=50.0)
     solver.set_field("c", pattern(solver))
