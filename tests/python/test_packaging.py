@@ -5,6 +5,7 @@ import importlib
 import itertools
 import os
 import pathlib
+import re
 import subprocess
 import sys
 
@@ -84,6 +85,13 @@ def test_refuses_a_processor_that_it_was_not_built_for(tmp_path):
     answer = run_python("import peclet.flow", tmp_path)
     assert answer.returncode == 1
     assert "ImportError: peclet-resolved was built for processors with imaginary" in answer.stderr
+
+
+def test_developers_have_what_the_package_depends_on():
+    project = (REPOSITORY / "pyproject.toml").read_text(encoding="utf-8")
+    dependencies = ast.literal_eval(re.search(r"^dependencies = (\[.*\])$", project, re.MULTILINE)[1])
+    tools = (REPOSITORY / "requirements-dev.txt").read_text(encoding="utf-8").splitlines()
+    assert set(dependencies) <= set(tools)
 
 
 def test_local_build_comes_first_in_the_given_order(tmp_path, monkeypatch):
