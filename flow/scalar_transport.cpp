@@ -15,16 +15,16 @@ struct AdvectionRow {
   Real fx, fy, fz;  // dt / h, per unit of the open fraction
   Real gx, gy, gz;  // half the mean gradient times spacing
 
-  KOKKOS_INLINE_FUNCTION static Real flux(const OpenFraction* open, const Real* velocity, const Real* c,
-                                          Index n, Index step) {
+  KOKKOS_FORCEINLINE_FUNCTION static Real flux(const OpenFraction* open, const Real* velocity, const Real* c,
+                                               Index n, Index step) {
     const Real carrier = static_cast<Real>(open[n]) * velocity[n];
     return carrier * carried_value<Scheme>(carrier, c[n - 2 * step], c[n - step], c[n], c[n + step]);
   }
-  KOKKOS_INLINE_FUNCTION static Real volume(const OpenFraction* open, const Real* velocity, Index n,
-                                            Index step) {
+  KOKKOS_FORCEINLINE_FUNCTION static Real volume(const OpenFraction* open, const Real* velocity, Index n,
+                                                 Index step) {
     return static_cast<Real>(open[n]) * velocity[n] + static_cast<Real>(open[n + step]) * velocity[n + step];
   }
-  KOKKOS_INLINE_FUNCTION Real operator()(int i) const {
+  KOKKOS_FORCEINLINE_FUNCTION Real operator()(int i) const {
     return fx * (flux(ox, u, c, i + 1, 1) - flux(ox, u, c, i, 1) + gx * volume(ox, u, i, 1)) +
            fy * (flux(oy, v, c, i + sy, sy) - flux(oy, v, c, i, sy) + gy * volume(oy, v, i, sy)) +
            fz * (flux(oz, w, c, i + sz, sz) - flux(oz, w, c, i, sz) + gz * volume(oz, w, i, sz));
@@ -57,7 +57,7 @@ KOKKOS_INLINE_FUNCTION AdvectionRow<Scheme> advection_row(const ScalarTerms& t, 
 template <class Scheme>
 struct Prediction {
   using Result = Nothing;
-  static constexpr bool may_overrun = false;
+  static constexpr bool may_overrun = true;
   ScalarTerms terms;
 
   struct Row {
@@ -66,11 +66,12 @@ struct Prediction {
     const Real *value, *gain;
     Real* predicted;
     Real ratio;
-    KOKKOS_INLINE_FUNCTION void operator()(int i) const {
-      predicted[i] = state[i] ? value[i] - advection(i) + ratio * gain[i] : value[i];
+    KOKKOS_FORCEINLINE_FUNCTION void operator()(int i) const {
+      const Real c = value[i], result = c - advection(i) + ratio * gain[i];
+      predicted[i] = state[i] ? result : c;
     }
   };
-  KOKKOS_INLINE_FUNCTION Row row(int j, int k) const {
+  KOKKOS_FORCEINLINE_FUNCTION Row row(int j, int k) const {
     const ScalarFields& f = terms.fields;
     const Index n = f.value.layout()(0, j, k);
     return {advection_row<Scheme>(terms, f.value.data(), n),
@@ -86,7 +87,7 @@ struct Prediction {
 template <class Scheme>
 struct Residual {
   using Result = Nothing;
-  static constexpr bool may_overrun = false;
+  static constexpr bool may_overrun = true;
   ScalarTerms terms;
   Real* residual;
 
@@ -96,25 +97,26 @@ struct Residual {
     const Real *value, *previous, *gain, *predicted, *source;
     Real *advected, *residual;
     Index sy, sz;
-    Real dx, dy, dz;  // dt D / h^2
-    Real ratio, uniform_source, time_step;
+    Real dx, dy, dz;                           // dt D / h^2
+    Real ratio, uniform_source, source_scale;  // source is any field where the scale is 0
 
-    KOKKOS_INLINE_FUNCTION Real extrapolated(Index n) const {
+    KOKKOS_FORCEINLINE_FUNCTION Real extrapolated(Index n) const {
       return value[n] + 0.5 * ratio * (value[n] - previous[n]);
     }
-    KOKKOS_INLINE_FUNCTION void operator()(int i) const {
+    KOKKOS_FORCEINLINE_FUNCTION void operator()(int i) const {
       const Real c = value[i];
       const Real a = 0.5 * (c + predicted[i] - ratio * gain[i]) - 0.5 * advection(i);
       const Real diffusion = dx * (extrapolated(i - 1) + extrapolated(i + 1)) +
                              dy * (extrapolated(i - sy) + extrapolated(i + sy)) +
                              dz * (extrapolated(i - sz) + extrapolated(i + sz)) -
                              2 * (dx + dy + dz) * extrapolated(i);
-      const Real given = uniform_source + (source ? time_step * source[i] : 0.0);
+      const Real given = uniform_source + source_scale * source[i];
+      const Real result = (a - c) + diffusion + given - ratio * (c - previous[i]);
       advected[i] = a;
-      residual[i] = state[i] ? (a - c) + diffusion + given - ratio * (c - previous[i]) : 0.0;
+      residual[i] = state[i] ? result : 0.0;
     }
   };
-  KOKKOS_INLINE_FUNCTION Row row(int j, int k) const {
+  KOKKOS_FORCEINLINE_FUNCTION Row row(int j, int k) const {
     const ScalarFields& f = terms.fields;
     const Layout& layout = f.value.layout();
     const Index n = layout(0, j, k);
@@ -126,7 +128,7 @@ struct Residual {
             f.previous.data() + n,
             f.gain.data() + n,
             f.predicted.data() + n,
-            terms.source_field.data() ? terms.source_field.data() + n : nullptr,
+            (terms.source_field.data() ? terms.source_field : f.value).data() + n,
             f.advected.data() + n,
             residual + n,
             layout.pitch_y,
@@ -136,7 +138,7 @@ struct Residual {
             diffusion / (h[2] * h[2]),
             terms.step_ratio,
             terms.time_step * terms.source,
-            terms.time_step};
+            terms.source_field.data() ? terms.time_step : 0};
   }
 };
 
