@@ -108,29 +108,39 @@ CASES = (
         "fall from rest",
         small=lambda: falling_sphere(4, 48, 1.5, 0.05, 0.06, 0.06, ("0.5", "1")),
         full=lambda curves: (
-            falling_sphere(6, 120, 1.5, 0.0125, 0.03, 0.03, ("0.1", "0.5", "1", "2"))
+            falling_sphere(6, 120, 1.5, 0.0125, 0.03, 0.035, ("0.1", "0.5", "1", "2"))
             + falling_sphere(6, 120, 7.8, 0.0125, 0.03, 0.03, ("0.1", "0.5", "1", "2"))
         ),
     ),
     Case(
         "ten Cate E1",
         small=lambda: settling_in_box("E1", 6, 0.02, 0.02),
-        full=lambda curves: settling_in_box("E1", 12, 0.02, 0.02, curves),
+        full=lambda curves: settling_in_box("E1", 8, 0.02, 0.02, curves),
     ),
     Case(
         "ten Cate E4",
         small=None,
-        full=lambda curves: settling_in_box("E4", 12, 0.02, 0.02, curves),
+        full=lambda curves: settling_in_box("E4", 8, 0.02, 0.02, curves),
+    ),
+    Case(
+        "ten Cate, finer grid",
+        small=None,
+        full=lambda curves: settling_in_box("E1", 12, 0.02, 0.02) + settling_in_box("E4", 12, 0.02, 0.02),
     ),
     Case(
         "settling in a wide tank",
         small=None,
-        full=lambda curves: settling_in_wide_tank(20, 8, 10, 0.03) + settling_in_wide_tank(80, 8, 8, 0.03),
+        full=lambda curves: settling_in_wide_tank(20, 6, 10, 0.03) + settling_in_wide_tank(80, 8, 8, 0.03),
     ),
     Case(
         "oscillating cylinder",
         small=lambda: oscillating_cylinder(12, 10, 2, 0.1),
-        full=lambda curves: oscillating_cylinder(32, 16, 6, 0.04, curves),
+        full=lambda curves: oscillating_cylinder(16, 12, 4, 0.04, curves),
+    ),
+    Case(
+        "oscillating cylinder, finer grid",
+        small=None,
+        full=lambda curves: oscillating_cylinder(32, 16, 6, 0.04),
     ),
     Case(
         "heated sphere",

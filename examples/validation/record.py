@@ -8,22 +8,26 @@ from __future__ import annotations
 import sys
 import time
 
-from examples.validation.cases import CASES, Curves
+from examples.validation.cases import CASES, Case, Curves
 from examples.validation.results import table, write, write_curve
 
 
+def run(case: Case) -> None:
+    """Print and record the rows of a case."""
+    begin = time.perf_counter()
+    curves: Curves = {}
+    rows = case.full(curves)
+    write(rows)
+    for name, columns in curves.items():
+        write_curve(name, columns)
+    print(f"{case.name}: {time.perf_counter() - begin:.0f} s\n{table(rows)}\n", flush=True)
+
+
 def main(words: list[str]) -> None:
-    """Print and record the rows of these cases."""
+    """Run the cases whose names contain one of the words, or all."""
     for case in CASES:
-        if words and not any(word in case.name for word in words):
-            continue
-        begin = time.perf_counter()
-        curves: Curves = {}
-        rows = case.full(curves)
-        write(rows)
-        for name, columns in curves.items():
-            write_curve(name, columns)
-        print(f"{case.name}: {time.perf_counter() - begin:.0f} s\n{table(rows)}\n", flush=True)
+        if not words or any(word in case.name for word in words):
+            run(case)
 
 
 if __name__ == "__main__":
