@@ -72,7 +72,8 @@ def shedding_cylinder(resolution: int, duration: float, target: float, curves: C
     """Schaefer and Turek 2D-2: the last part of the history, when the shedding is periodic."""
     history = channel.run(1.5, resolution, duration)
     late = history.after(duration - 2)
-    curves["shedding"] = {"time": history.time, "drag": history.drag, "lift": history.lift}
+    end = history.after(duration - 1)
+    curves["shedding"] = {"time": end.time, "drag": end.drag, "lift": end.lift}
     found = {"C_D max": late.drag.max(), "C_L max": late.lift.max(), "Strouhal": late.strouhal}
     bounds = {"C_D max": 1.5 * target, "C_L max": 3 * target, "Strouhal": target}
     return [

@@ -35,11 +35,10 @@ def draw_cavity() -> Figure:
 def draw_shedding() -> Figure:
     """Drag and lift of the cylinder in the channel."""
     curve = read_curve("shedding")
-    late = curve["time"] > curve["time"][-1] - 1.0
     with plt.rc_context(STYLE):
         figure, axes = plt.subplots(1, 2, figsize=(7.6, 2.8), layout="constrained")
         for axis, name, reference in zip(axes, ("drag", "lift"), (3.2266, 0.9866), strict=True):
-            axis.plot(curve["time"][late], curve[name][late], color=BLUE)
+            axis.plot(curve["time"], curve[name], color=BLUE)
             axis.axhline(reference, color="0.6", linewidth=0.8)
             axis.set(xlabel="time (s)", ylabel=f"coefficient of {name}")
     return figure
