@@ -135,8 +135,9 @@ void run(const Case& c, Real tolerance, int repetitions) {
   }
   const double cells = static_cast<double>(c.cells[0]) * c.cells[1] * c.cells[2];
   std::printf("%-30s %7.0e %4d %9.2f %9.2f %9.2f %8.1e %8.1f %9.2f %9.2f %s\n", c.name.c_str(), tolerance,
-              report.iterations, best, processor, 1e6 * best / cells, report.residual, solver.bytes() / cells,
-              set_time, update_time, report.converged ? "" : "NOT CONVERGED");
+              report.iterations, best, processor, 1e6 * best / cells, report.residual,
+              static_cast<Real>(solver.bytes()) / cells, set_time, update_time,
+              report.converged ? "" : "NOT CONVERGED");
   std::fflush(stdout);
 }
 
@@ -156,7 +157,13 @@ int main(int argc, char** argv) {
   cases.push_back(open_box({512, 512, 1}));
   cases.push_back(packing(96, 3, 0.5));
   cases.push_back(packing(160, 3, 0.5));
-  for (const Case& c : cases)
-    if (c.name.find(wanted) != std::string::npos)
-      for (const Real tolerance : {1e-6, 1e-8}) run(c, tolerance, 8);
+  bool found = false;
+  for (const Case& c : cases) {
+    if (c.name.find(wanted) == std::string::npos) continue;
+    found = true;
+    for (const Real tolerance : {1e-6, 1e-8}) run(c, tolerance, 8);
+  }
+  if (!found)
+    std::fprintf(stderr, "bench_pressure: expected part of the name of a case, found %s\n", argv[1]);
+  return found ? 0 : 1;
 }
