@@ -139,7 +139,13 @@ void Scalars::fill(const Scalar& scalar, const Field<Real>& value) const {
 
 void Scalars::prepare(const ScalarFlow& flow) {
   for (Scalar& scalar : scalars_) take_sides(scalar, flow.sides);
-  for (Scalar& scalar : scalars_) prepare(scalar, flow);
+  for (Scalar& scalar : scalars_) {
+    prepare(scalar, flow);
+    const Real3& g = scalar.settings.mean_gradient;
+    require_state(scalar.is_conservative || (g[0] == 0 && g[1] == 0 && g[2] == 0),
+                  "step(): expected walls and sides of given flux only for scalar '" + scalar.name +
+                      "', which has a mean gradient, found one of given value");
+  }
 }
 
 void Scalars::prepare(Scalar& scalar, const ScalarFlow& flow) {

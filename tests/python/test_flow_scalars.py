@@ -181,6 +181,31 @@ def test_a_mean_gradient_in_a_stream_is_a_source():
     assert flux == pytest.approx([-0.3 * 2 + 0.2 * solver.get_field("c").mean(), 0, 0], rel=1e-12)
 
 
+def test_a_mean_gradient_refuses_walls_of_given_value():
+    solver = box(((4.3, 3.6, 2.2), 2.1))
+    solver.set_scalar_mean_gradient("c", (1, 0, 0))
+    solver.step()
+    solver.set_scalar_wall("c", "dirichlet", 1.0)
+    with pytest.raises(RuntimeError, match="scalar 'c', which has a mean gradient"):
+        solver.step()
+    assert solver.number_of_steps == 1
+
+
+def test_conduction_along_a_mean_gradient_is_that_of_an_array():
+    """Maxwell's dilute array of spheres that conduct nothing: D_eff / D = 1 - 3/2 phi + O(phi^2)."""
+    cells, radius = 20, 5.0
+    fraction = 4 / 3 * np.pi * radius**3 / cells**3
+    solver = flow.Solver(cells, cells, cells)
+    solver.set_scene(*spheres(((9.3, 9.6, 9.1), radius)), periodic=True)
+    solver.set_solid_from_scene()
+    solver.add_scalar("c", 2.0)
+    solver.set_scalar_mean_gradient("c", (1, 0, 0))
+    solver.solve_scalar_steady("c")
+    along, *across = solver.scalar_mean_flux("c") / -2.0
+    assert along == pytest.approx((1 - fraction) / (1 + fraction / 2), rel=5e-3)
+    assert across == pytest.approx([0, 0], abs=1e-4)
+
+
 def test_warm_fluid_rises_and_only_where_asked():
     solver = flow.Solver(12, 8, 8)
     solver.set_dt(1.0)
