@@ -130,7 +130,9 @@ CASES = (
     Case(
         "settling in a wide tank",
         small=None,
-        full=lambda curves: settling_in_wide_tank(20, 6, 10, 0.03) + settling_in_wide_tank(80, 8, 8, 0.03),
+        full=lambda curves: (
+            settling_in_wide_tank(20, 6, 10, 0.03, 0.045) + settling_in_wide_tank(80, 8, 8, 0.03, 0.03)
+        ),
     ),
     Case(
         "oscillating cylinder",

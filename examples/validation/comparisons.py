@@ -233,11 +233,13 @@ def settling_in_box(
     return [Row(case, f"u_max / u_inf, band {low} to {high}", nearest, found, target, bound=bound)]
 
 
-def settling_in_wide_tank(reynolds: float, resolution: int, width: float, target: float) -> Rows:
+def settling_in_wide_tank(
+    reynolds: float, resolution: int, width: float, target: float, bound: float
+) -> Rows:
     """Largest speed of a sphere that settles in a wide tank."""
     _, speeds = wide_tank.terminal_speed(reynolds, resolution, width=width)
     name = f"settling in a wide tank, Re {reynolds:g}, d/h {resolution}"
-    return [Row(name, "u / u of Schiller and Naumann", 1.0, float(speeds.max()), target)]
+    return [Row(name, "u / u of Schiller and Naumann", 1.0, float(speeds.max()), target, bound=bound)]
 
 
 def oscillating_cylinder(
