@@ -107,7 +107,7 @@ def torque(cells: int, solid_fraction: float, shift: Sequence[float] = (0, 0, 0)
     solver = make_array(cells, solid_fraction, (cells - 1) / 2 + np.array(shift), dt, mu)
     solver.set_instance_motion(0, (0, 0, 0), (0, spin, 0))
     found = np.zeros(3)
-    for _ in range(60):
+    for _ in range(200):
         solver.step()
         old, found = found, solver.hydro_force_torque_reaction()[1, 0]
         if np.abs(found - old).max() <= 1e-5 * np.abs(found).max():
