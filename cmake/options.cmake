@@ -27,6 +27,8 @@ set(CMAKE_CXX_VISIBILITY_PRESET hidden)
 set(CMAKE_VISIBILITY_INLINES_HIDDEN ON)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 
+include(CheckCXXCompilerFlag)
+
 # Instruction set. The portable one is x86-64-v3 (AVX2 and FMA: Intel since 2013, AMD since 2015).
 if(PECLET_NATIVE)
   set(PECLET_ARCHITECTURE_FLAGS -march=native)
@@ -34,6 +36,13 @@ elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   set(PECLET_ARCHITECTURE_FLAGS -march=x86-64-v3)
 else()
   set(PECLET_ARCHITECTURE_FLAGS)
+endif()
+
+# With AVX-512, vectors of one length: where the compiler mixes two, loads wait for stores.
+check_cxx_compiler_flag(-mprefer-vector-width=256 PECLET_HAS_VECTOR_WIDTH)
+set(PECLET_SWEEP_FLAGS)
+if(PECLET_HAS_VECTOR_WIDTH)
+  set(PECLET_SWEEP_FLAGS -mprefer-vector-width=256)
 endif()
 
 add_library(peclet_options INTERFACE)

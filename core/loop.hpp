@@ -44,15 +44,31 @@ struct RowRanges {
   }
 };
 
-/// body(n) for 0 <= n < count.
+/// Lists and boxes with fewer entries and cells than this are not worth several threads on the host.
+inline constexpr Index smallest_parallel_list = 512, smallest_parallel_box = 8192;
+inline bool is_serial_list(Index count) { return runs_on_host && count < smallest_parallel_list; }
+inline bool is_serial_box(Index cells) { return runs_on_host && cells < smallest_parallel_box; }
+
+/// body(n) for 0 <= n < count, each of them worth a thread.
 template <class Body>
-void for_each(const std::string& label, Index count, const Body& body) {
+void for_each_task(const std::string& label, Index count, const Body& body) {
   if (count <= 0) return;
+  if constexpr (runs_on_host) {
+    if (count == 1) return body(0);
+  }
   Kokkos::parallel_for(
       label,
       Kokkos::RangePolicy<ExecutionSpace, Kokkos::IndexType<Index>, Kokkos::Schedule<Kokkos::Static>>(0,
                                                                                                       count),
       body);
+}
+
+/// body(n) for 0 <= n < count.
+template <class Body>
+void for_each(const std::string& label, Index count, const Body& body) {
+  if (!is_serial_list(count)) return for_each_task(label, count, body);
+  if constexpr (runs_on_host)
+    for (Index n = 0; n < count; ++n) body(n);
 }
 
 /// body(i, j, k) on every cell of the ranges.
@@ -62,13 +78,15 @@ void for_each_cell(const std::string& label, const RowRanges& ranges, const Body
   if (box.size() <= 0) return;
   const Index ny = box.extent(1);
   if constexpr (runs_on_host) {
-    for_each(label, ranges.number_of_rows(), [=](Index row) {
+    const auto treat_row = [=](Index row) {
       const int j = box.low[1] + static_cast<int>(row % ny);
       const int k = box.low[2] + static_cast<int>(row / ny);
       const int end = ranges.end(row);
       PECLET_INDEPENDENT_ITERATIONS
       for (int i = ranges.begin(row); i < end; ++i) body(i, j, k);
-    });
+    };
+    if (!is_serial_box(box.size())) return for_each_task(label, ranges.number_of_rows(), treat_row);
+    for (Index row = 0; row < ranges.number_of_rows(); ++row) treat_row(row);
   } else {
     const Index nx = box.extent(0);
     for_each(
@@ -94,20 +112,23 @@ Real sum_cells(const std::string& label, const RowRanges& ranges, const Body& bo
   const Index ny = box.extent(1);
   Real total = 0;
   if constexpr (runs_on_host) {
-    Kokkos::parallel_reduce(
-        label,
-        Kokkos::RangePolicy<ExecutionSpace, Kokkos::IndexType<Index>, Kokkos::Schedule<Kokkos::Static>>(
-            0, ranges.number_of_rows()),
-        [=](Index row, Real& sum) {
-          const int j = box.low[1] + static_cast<int>(row % ny);
-          const int k = box.low[2] + static_cast<int>(row / ny);
-          const int end = ranges.end(row);
-          Real row_sum = 0;
+    const auto add_row = [=](Index row, Real& sum) {
+      const int j = box.low[1] + static_cast<int>(row % ny);
+      const int k = box.low[2] + static_cast<int>(row / ny);
+      const int end = ranges.end(row);
+      Real row_sum = 0;
 #pragma omp simd reduction(+ : row_sum)
-          for (int i = ranges.begin(row); i < end; ++i) row_sum += body(i, j, k);
-          sum += row_sum;
-        },
-        total);
+      for (int i = ranges.begin(row); i < end; ++i) row_sum += body(i, j, k);
+      sum += row_sum;
+    };
+    if (is_serial_box(box.size()))
+      for (Index row = 0; row < ranges.number_of_rows(); ++row) add_row(row, total);
+    else
+      Kokkos::parallel_reduce(
+          label,
+          Kokkos::RangePolicy<ExecutionSpace, Kokkos::IndexType<Index>, Kokkos::Schedule<Kokkos::Static>>(
+              0, ranges.number_of_rows()),
+          add_row, total);
   } else {
     const Index nx = box.extent(0);
     Kokkos::parallel_reduce(
@@ -131,23 +152,26 @@ Real max_cells(const std::string& label, const RowRanges& ranges, const Body& bo
   const Index ny = box.extent(1);
   Real largest = 0;
   if constexpr (runs_on_host) {
-    Kokkos::parallel_reduce(
-        label,
-        Kokkos::RangePolicy<ExecutionSpace, Kokkos::IndexType<Index>, Kokkos::Schedule<Kokkos::Static>>(
-            0, ranges.number_of_rows()),
-        [=](Index row, Real& maximum) {
-          const int j = box.low[1] + static_cast<int>(row % ny);
-          const int k = box.low[2] + static_cast<int>(row / ny);
-          const int end = ranges.end(row);
-          Real row_maximum = 0;
+    const auto raise_by_row = [=](Index row, Real& maximum) {
+      const int j = box.low[1] + static_cast<int>(row % ny);
+      const int k = box.low[2] + static_cast<int>(row / ny);
+      const int end = ranges.end(row);
+      Real row_maximum = 0;
 #pragma omp simd reduction(max : row_maximum)
-          for (int i = ranges.begin(row); i < end; ++i) {
-            const Real value = body(i, j, k);
-            row_maximum = value > row_maximum ? value : row_maximum;
-          }
-          maximum = row_maximum > maximum ? row_maximum : maximum;
-        },
-        Kokkos::Max<Real>(largest));
+      for (int i = ranges.begin(row); i < end; ++i) {
+        const Real value = body(i, j, k);
+        row_maximum = value > row_maximum ? value : row_maximum;
+      }
+      maximum = row_maximum > maximum ? row_maximum : maximum;
+    };
+    if (is_serial_box(box.size()))
+      for (Index row = 0; row < ranges.number_of_rows(); ++row) raise_by_row(row, largest);
+    else
+      Kokkos::parallel_reduce(
+          label,
+          Kokkos::RangePolicy<ExecutionSpace, Kokkos::IndexType<Index>, Kokkos::Schedule<Kokkos::Static>>(
+              0, ranges.number_of_rows()),
+          raise_by_row, Kokkos::Max<Real>(largest));
   } else {
     const Index nx = box.extent(0);
     Kokkos::parallel_reduce(
@@ -163,58 +187,6 @@ Real max_cells(const std::string& label, const RowRanges& ranges, const Body& bo
         Kokkos::Max<Real>(largest));
   }
   return largest < 0 ? 0 : largest;
-}
-
-struct MaxAndSum {
-  Real max = 0, sum = 0;
-};
-
-/// Largest magnitude and sum of body(i, j, k) over the ranges. The sum is not finite if any value is not.
-template <class Body>
-MaxAndSum max_and_sum_cells(const std::string& label, const RowRanges& ranges, const Body& body) {
-  const Box box = ranges.box;
-  MaxAndSum result;
-  if (box.size() <= 0) return result;
-  const Index ny = box.extent(1);
-  if constexpr (runs_on_host) {
-    Kokkos::parallel_reduce(
-        label,
-        Kokkos::RangePolicy<ExecutionSpace, Kokkos::IndexType<Index>, Kokkos::Schedule<Kokkos::Static>>(
-            0, ranges.number_of_rows()),
-        [=](Index row, Real& maximum, Real& sum) {
-          const int j = box.low[1] + static_cast<int>(row % ny);
-          const int k = box.low[2] + static_cast<int>(row / ny);
-          const int end = ranges.end(row);
-          Real row_maximum = 0, row_sum = 0;
-#pragma omp simd reduction(max : row_maximum) reduction(+ : row_sum)
-          for (int i = ranges.begin(row); i < end; ++i) {
-            const Real value = body(i, j, k);
-            const Real magnitude = value < 0 ? -value : value;
-            row_maximum = magnitude > row_maximum ? magnitude : row_maximum;
-            row_sum += value;
-          }
-          maximum = row_maximum > maximum ? row_maximum : maximum;
-          sum += row_sum;
-        },
-        Kokkos::Max<Real>(result.max), Kokkos::Sum<Real>(result.sum));
-  } else {
-    const Index nx = box.extent(0);
-    Kokkos::parallel_reduce(
-        label, Kokkos::RangePolicy<ExecutionSpace, Kokkos::IndexType<Index>>(0, box.size()),
-        KOKKOS_LAMBDA(Index n, Real & maximum, Real & sum) {
-          const Index row = n / nx;
-          const int i = box.low[0] + static_cast<int>(n % nx);
-          if (i < ranges.begin(row) || i >= ranges.end(row)) return;
-          const Real value =
-              body(i, box.low[1] + static_cast<int>(row % ny), box.low[2] + static_cast<int>(row / ny));
-          const Real magnitude = value < 0 ? -value : value;
-          maximum = magnitude > maximum ? magnitude : maximum;
-          sum += value;
-        },
-        Kokkos::Max<Real>(result.max), Kokkos::Sum<Real>(result.sum));
-  }
-  if (!(result.max >= 0)) result.max = 0;
-  return result;
 }
 
 /// body(i, j) for 0 <= i < columns, 0 <= j < rows of a small table: not worth several threads on the host.
@@ -266,7 +238,9 @@ void reduce_cells(const std::string& label, const RowRanges& ranges, const Body&
 template <class Body>
 Real sum_each(const std::string& label, Index count, const Body& body) {
   Real total = 0;
-  if (count > 0)
+  if (is_serial_list(count))
+    for (Index n = 0; n < count; ++n) total += body(n);
+  else
     Kokkos::parallel_reduce(
         label,
         Kokkos::RangePolicy<ExecutionSpace, Kokkos::IndexType<Index>, Kokkos::Schedule<Kokkos::Static>>(
@@ -279,7 +253,12 @@ Real sum_each(const std::string& label, Index count, const Body& body) {
 template <class Keep>
 Index enumerate(const std::string& label, Index count, const Array<Index>& positions, const Keep& keep) {
   Index total = 0;
-  if (count > 0)
+  if (is_serial_list(count))
+    for (Index n = 0; n < count; ++n) {
+      positions(n) = total;
+      total += keep(n) ? 1 : 0;
+    }
+  else
     Kokkos::parallel_scan(
         label, Kokkos::RangePolicy<ExecutionSpace, Kokkos::IndexType<Index>>(0, count),
         KOKKOS_LAMBDA(Index n, Index & running, bool is_final) {
@@ -295,7 +274,9 @@ Index enumerate(const std::string& label, Index count, const Array<Index>& posit
 template <class Body>
 Real max_each(const std::string& label, Index count, const Body& body) {
   Real largest = 0;
-  if (count > 0)
+  if (is_serial_list(count))
+    for (Index n = 0; n < count; ++n) largest = Kokkos::fmax(largest, body(n));
+  else
     Kokkos::parallel_reduce(
         label, Kokkos::RangePolicy<ExecutionSpace, Kokkos::IndexType<Index>>(0, count),
         KOKKOS_LAMBDA(Index n, Real & maximum) {
@@ -311,6 +292,14 @@ template <class Amount>
 Index exclusive_sum(const std::string& label, Index count, const Array<Index>& offsets,
                     const Amount& amount) {
   Index total = 0;
+  if (is_serial_list(count)) {
+    for (Index n = 0; n < count; ++n) {
+      offsets(n) = total;
+      total += amount(n);
+    }
+    offsets(count) = total;
+    return total;
+  }
   Kokkos::parallel_scan(
       label, Kokkos::RangePolicy<ExecutionSpace, Kokkos::IndexType<Index>>(0, count + 1),
       KOKKOS_LAMBDA(Index n, Index & running, bool is_final) {
@@ -325,6 +314,10 @@ Index exclusive_sum(const std::string& label, Index count, const Array<Index>& o
 template <class Body>
 void for_each_from(const std::string& label, Index first, Index last, const Body& body) {
   if (first >= last) return;
+  if (is_serial_list(last - first)) {
+    for (Index n = first; n < last; ++n) body(n);
+    return;
+  }
   Kokkos::parallel_for(
       label,
       Kokkos::RangePolicy<ExecutionSpace, Kokkos::IndexType<Index>, Kokkos::Schedule<Kokkos::Static>>(first,

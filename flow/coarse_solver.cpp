@@ -19,8 +19,8 @@ struct Connections {
 
 /// Row n of the operator and of the adjacency.
 template <class Coefficient>
-KOKKOS_INLINE_FUNCTION void write_row(const LevelOperator<Coefficient>& op, int n, const DenseMatrix& matrix,
-                                      const Connections& connections) {
+KOKKOS_INLINE_FUNCTION void write_row(const LevelOperator<Coefficient>& op, const float* reaction, int n,
+                                      const DenseMatrix& matrix, const Connections& connections) {
   const LevelShape& shape = op.shape;
   const int nx = shape.cells[0], ny = shape.cells[1];
   const Int3 cell{n % nx, n / nx % ny, n / (nx * ny)};
@@ -28,7 +28,9 @@ KOKKOS_INLINE_FUNCTION void write_row(const LevelOperator<Coefficient>& op, int 
     matrix(n, m) = 0;
     connections(n, m) = n == m;
   }
-  connections.fixed[n] = 0;
+  const Real extra = reaction ? reaction[shape.layout(cell[0], cell[1], cell[2])] : 0;
+  matrix(n, n) = extra;
+  connections.fixed[n] = extra > 0;
   for (int axis = 0; axis < 3; ++axis)
     for (int high = 0; high < 2; ++high) {
       Int3 face = cell, other = cell;
@@ -111,11 +113,11 @@ void extract(const DenseMatrix& inverse, const Connections& connections, const u
 }
 
 template <class Coefficient>
-void assemble(const LevelOperator<Coefficient>& op, const DenseMatrix& matrix, const Connections& connections,
-              unsigned char* is_empty) {
+void assemble(const LevelOperator<Coefficient>& op, const float* reaction, const DenseMatrix& matrix,
+              const Connections& connections, unsigned char* is_empty) {
   for_each_entry(
       "flow::assemble", matrix.size, 1, KOKKOS_LAMBDA(int n, int) {
-        write_row(op, n, matrix, connections);
+        write_row(op, reaction, n, matrix, connections);
         is_empty[n] = !(matrix(n, n) > 0);
       });
 }
@@ -153,11 +155,11 @@ CoarseSolver::CoarseSolver(const LevelShape& shape) : shape_(shape) {
 }
 
 template <class Coefficient>
-void CoarseSolver::set_operator(const LevelOperator<Coefficient>& op) const {
+void CoarseSolver::set_operator(const LevelOperator<Coefficient>& op, const float* reaction) const {
   const int size = static_cast<int>(shape_.number_of_cells());
   const DenseMatrix matrix{size, matrix_.data()}, other{size, inverse_.data()};
   const Connections connections{size, connected_.data(), fixed_.data()};
-  assemble(op, matrix, connections, empty_.data());
+  assemble(op, reaction, matrix, connections, empty_.data());
   close_connections(connections);
   regularise(matrix, connections, added_.data(), removed_.data());
   for (int pivot = 0; pivot < size; ++pivot)
@@ -166,8 +168,8 @@ void CoarseSolver::set_operator(const LevelOperator<Coefficient>& op) const {
           pseudo_inverse_.data());
 }
 
-template void CoarseSolver::set_operator(const LevelOperator<OpenFraction>&) const;
-template void CoarseSolver::set_operator(const LevelOperator<float>&) const;
+template void CoarseSolver::set_operator(const LevelOperator<OpenFraction>&, const float*) const;
+template void CoarseSolver::set_operator(const LevelOperator<float>&, const float*) const;
 
 void CoarseSolver::solve(const Field<float>& rhs, const Field<float>& solution) const {
   multiply(shape_, pseudo_inverse_.data(), vector_.data(), rhs, solution);

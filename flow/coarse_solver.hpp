@@ -13,8 +13,9 @@ class CoarseSolver {
   CoarseSolver() = default;
   explicit CoarseSolver(const LevelShape& shape);
 
+  /// reaction: added to the diagonal, unless null.
   template <class Coefficient>
-  void set_operator(const LevelOperator<Coefficient>& op) const;
+  void set_operator(const LevelOperator<Coefficient>& op, const float* reaction = nullptr) const;
   void solve(const Field<float>& rhs, const Field<float>& solution) const;
   std::size_t bytes() const;
 

@@ -79,7 +79,10 @@ Real body_volume(const BodyGeometry& geometry, const Grid& grid, int b, const Bo
 Real count_open_faces(const RowRanges& rows, const Field<OpenFraction>& open) {
   const Field<OpenFraction> o = open;
   return sum_cells(
-      "flow::count_open_faces", rows, KOKKOS_LAMBDA(int i, int j, int k) { return o(i, j, k) ? 1.0 : 0.0; });
+      "flow::count_open_faces", rows, KOKKOS_LAMBDA(int i, int j, int k) {
+        const OpenFraction fraction = o(i, j, k);
+        return static_cast<Real>(fraction < 1 ? fraction : 1);
+      });
 }
 
 }  // namespace peclet::flow

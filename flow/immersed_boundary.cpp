@@ -145,7 +145,7 @@ void extrapolate_pressure(const FaceVector<OpenFraction>& open, const DomainSide
       });
 }
 
-/// Per row of cells, the range outside which every face is closed.
+/// Per row of cells, the range outside which every face is closed; it begins on whole vectors.
 RowRanges open_row_ranges(const FaceVector<OpenFraction>& open_fractions, const Int3& n) {
   RowRanges rows(n);
   const auto count = static_cast<std::size_t>(rows.number_of_rows());
@@ -166,7 +166,7 @@ RowRanges open_row_ranges(const FaceVector<OpenFraction>& open_fractions, const 
           begin = i < begin ? i : begin;
           end = i + 1;
         }
-        first(row) = end > begin ? begin : 0;
+        first(row) = end > begin ? begin / Layout::alignment * Layout::alignment : 0;
         last(row) = end > begin ? end : 0;
       });
   return rows;

@@ -52,46 +52,16 @@ struct Correction {
   }
 };
 
-/// div(v v_c) at face p, conservative form.
-template <class Scheme>
-KOKKOS_INLINE_FUNCTION Real advection_at_face(const FaceVector<Real>& v, int c, Index p,
-                                              const Real3& inverse_spacing) {
-  const Layout& layout = v.x.layout();
-  const Index own = layout.stride(c);
-  const Real* q = v[c].data();
-  Real divergence = 0;
-  for (int a = 0; a < 3; ++a) {
-    const Index step = layout.stride(a);
-    const Real* carrying = v[a].data();
-    divergence += inverse_spacing[a] * (momentum_flux_low<Scheme>(q, carrying, p + step, own, step) -
-                                        momentum_flux_low<Scheme>(q, carrying, p, own, step));
-  }
-  return divergence;
-}
-
-/// div(v v_c) - v_c div(v) at face p. Beside walls the carrying velocity is not solenoidal, because faces are
-/// partly closed; without the second term a stream that moves with the body would not stay uniform.
-template <class Scheme>
-KOKKOS_INLINE_FUNCTION Real advection_beside_wall(const FaceVector<Real>& v, int c, Index p,
-                                                  const Real3& inverse_spacing) {
-  return advection_at_face<Scheme>(v, c, p, inverse_spacing) -
-         v[c][p] * carrier_divergence(v, c, p, inverse_spacing);
-}
-
-template <>
-KOKKOS_INLINE_FUNCTION Real advection_beside_wall<NoAdvection>(const FaceVector<Real>&, int, Index,
-                                                               const Real3&) {
-  return 0;
-}
-
-KOKKOS_INLINE_FUNCTION Real laplacian_at_wall(const WallRows& rows, Index row, const Field<Real>& q, Index p,
-                                              const Real3& inverse_square) {
+/// L at a wall less the regular L.
+KOKKOS_INLINE_FUNCTION Real laplacian_correction(const WallRows& rows, Index row, const Field<Real>& q,
+                                                 Index p, const Real3& inverse_square) {
   const Layout& layout = q.layout();
   Real sum = rows.wall_sum(row);
   for (int d = 0; d < WallRows::directions; ++d) {
     const Index step = layout.stride(d / 2);
-    const Real neighbor = rows.is_wall(row, d) ? 0.0 : q[d % 2 ? p + step : p - step];
-    sum += inverse_square[d / 2] * rows.weight(row, d) * (neighbor - q[p]);
+    const Real weight = rows.weight(row, d), neighbor = q[d % 2 ? p + step : p - step];
+    const Real weighted = rows.is_wall(row, d) ? -neighbor : (weight - 1) * neighbor;
+    sum += inverse_square[d / 2] * (weighted - (weight - 1) * q[p]);
   }
   return sum;
 }
@@ -106,15 +76,6 @@ struct InverseSpacing {
     }
   }
 };
-
-KOKKOS_INLINE_FUNCTION Real predictor_residual(const MomentumTerms& t, int c, Index p, Real advection,
-                                               Real laplacian, Real inverse_spacing) {
-  const Real gradient = inverse_spacing * (t.pressure[p] - t.pressure[p - t.pressure.layout().stride(c)]);
-  const Real change = t.velocity[c][p] - t.previous[c][p];
-  return t.time_step *
-             (-advection - gradient / t.density + t.acceleration[c] + t.kinematic_viscosity * laplacian) -
-         t.step_ratio * change;
-}
 
 /// Residual of component c on the regular grid; walls are put right afterwards.
 template <class Scheme, int c>
@@ -175,22 +136,24 @@ struct GridResidual {
   }
 };
 
-template <class Scheme>
-void residual_of_wall_rows(int c, const MomentumTerms& terms, const WallRows& rows,
-                           const Field<Real>& residual) {
-  const MomentumTerms t = terms;
-  const InverseSpacing inverse(terms.grid);
-  const Field<Real> r = residual;
-  const WallRows w = rows;
-  for_each(
-      "flow::momentum_residual_walls", rows.count, KOKKOS_LAMBDA(Index row) {
-        if (w.superseded(row)) return;
-        const Index p = w.face(row);
-        const Real advection = advection_beside_wall<Scheme>(t.extrapolated, c, p, inverse.first);
-        const Real laplacian = laplacian_at_wall(w, row, t.extrapolated[c], p, inverse.square);
-        r[p] = predictor_residual(t, c, p, advection, laplacian, inverse.first[c]);
-      });
-}
+/// What walls add to the regular residual. Beside walls the carrying velocity is not solenoidal, because
+/// faces are partly closed: without the term v_c div(v) a stream that moves with the body would not stay
+/// uniform.
+template <bool is_advected>
+struct WallResidual {
+  Field<Real> transported, residual;
+  WallRows rows;
+  Real time_step, viscosity;
+  Real3 inverse_square;
+
+  KOKKOS_INLINE_FUNCTION void operator()(Index row) const {
+    if (rows.superseded(row)) return;
+    const Index p = rows.face(row);
+    const Real laplacian = laplacian_correction(rows, row, transported, p, inverse_square);
+    const Real dilation = is_advected ? rows.dilation(row) : 0.0;
+    residual[p] += time_step * (viscosity * laplacian + dilation);
+  }
+};
 
 /// Momentum per unit time, density and volume that advection takes out of the fluid at wall rows.
 template <class Scheme>
@@ -203,7 +166,9 @@ Real leak_of_rows(int c, const MomentumTerms& terms, const WallRows& rows) {
         if (w.superseded(row)) return 0.0;
         const Layout& layout = v.x.layout();
         const Index p = w.face(row), own = layout.stride(c);
-        Real outflow = -v[c][p] * carrier_divergence(v, c, p, inverse.first);
+        const Real dilation = v[c][p] * carrier_divergence(v, c, p, inverse.first);
+        w.dilation(row) = dilation;
+        Real outflow = -dilation;
         for (int d = 0; d < WallRows::directions; ++d) {
           if (!w.is_wall(row, d)) continue;
           const Index step = layout.stride(d / 2);
@@ -225,10 +190,16 @@ template <class Scheme, int c>
 void residual_of_component(const MomentumTerms& terms, const SweepPlan& plan, const RowRanges& rows,
                            const WallRows& fixed_rows, const WallRows& moving_rows,
                            const Field<Real>& residual) {
-  const GridResidual<Scheme, c> body{terms, InverseSpacing(terms.grid), residual.data()};
-  sweep("flow::momentum_residual", plan, Stage{rows, body});
-  residual_of_wall_rows<Scheme>(c, terms, fixed_rows, residual);
-  residual_of_wall_rows<Scheme>(c, terms, moving_rows, residual);
+  using AtWall = WallResidual<!std::is_same_v<Scheme, NoAdvection>>;
+  const InverseSpacing inverse(terms.grid);
+  const auto part = [&](const WallRows& walls) {
+    return AtEntries<AtWall>{walls.chains, walls.count,
+                             AtWall{terms.extrapolated[c], residual, walls, terms.time_step,
+                                    terms.kinematic_viscosity, inverse.square}};
+  };
+  sweep("flow::momentum_residual", plan,
+        Stage(rows, GridResidual<Scheme, c>{terms, inverse, residual.data()}, part(fixed_rows),
+              part(moving_rows)));
 }
 
 template <class Scheme>

@@ -39,13 +39,15 @@ void apply_correction(const SweepPlan& plan, const RowRanges& rows, Real step_ra
                       const Field<Real>& previous);
 
 /// residual = u + dt (-A(v) - grad p / rho + f / rho + nu L v) - (u + r (u - u_old)): what e must balance.
+/// rows begin on whole vectors. With advection, advective_leak comes before.
 void compute_momentum_residual(int c, const MomentumTerms& terms, const SweepPlan& plan,
                                const RowRanges& rows, const WallRows& fixed_rows, const WallRows& moving_rows,
                                const Field<Real>& residual);
 
-/// Sum over the fluid of -A(v) of component c: fluxes between fluid points cancel, those towards walls and
+/// Sum over the fluid of A(v) of component c: fluxes between fluid points cancel, those towards walls and
 /// the wall rows' v_c div(v) do not. This error, of first order in the spacing, is momentum that neither the
-/// fluid nor a body would have; it is returned to the fluid as a uniform acceleration.
+/// fluid nor a body would have; it is returned to the fluid as a uniform acceleration. Leaves v_c div(v) in
+/// the wall rows.
 Real advective_leak(int c, const MomentumTerms& terms, const WallRows& fixed_rows,
                     const WallRows& moving_rows);
 

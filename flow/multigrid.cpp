@@ -88,7 +88,9 @@ std::size_t bytes_of(const RowRanges& rows) { return (rows.first.span() + rows.l
 
 }  // namespace
 
-Multigrid::Multigrid(const Int3& cells, const Real3& spacing, const PressureSides& sides) {
+template <bool reactive>
+BasicMultigrid<reactive>::BasicMultigrid(const Int3& cells, const Real3& spacing,
+                                         const PressureSides& sides) {
   Real smallest = std::numeric_limits<Real>::infinity();
   for (int axis = 0; axis < 3; ++axis)
     if (cells[axis] > 1) smallest = std::min(smallest, spacing[axis]);
@@ -108,10 +110,17 @@ Multigrid::Multigrid(const Int3& cells, const Real3& spacing, const PressureSide
     level.fields.scratch = Field<float>(name + ".scratch", level.shape.layout);
     if (!levels_.empty()) {
       level.coefficients = FaceVector<float>(name + ".coefficients", level.shape.layout);
-      level.op = LevelOperator<float>(level.shape, level.coefficients, Real3{1, 1, 1});
+      if constexpr (reactive) {
+        level.reaction.total = Field<float>(name + ".reaction", level.shape.layout);
+        level.reaction.volume = Field<float>(name + ".volume", level.shape.layout);
+        level.op =
+            ReactiveOperator<float>(level.shape, level.coefficients, Real3{1, 1, 1}, level.reaction.total);
+      } else {
+        level.op = LevelOperator<float>(level.shape, level.coefficients, Real3{1, 1, 1});
+      }
     }
     levels_.push_back(level);
-    if (level.shape.number_of_cells() <= CoarseSolver::largest_size) break;
+    if (level.shape.number_of_cells() <= (reactive ? 32 : CoarseSolver::largest_size)) break;
     const Int3 ratio = merge_ratio(level.shape, spacing);
     for (int axis = 0; axis < 3; ++axis) factor[axis] *= ratio[axis];
     levels_.back().transfer.ratio = ratio;
@@ -119,9 +128,15 @@ Multigrid::Multigrid(const Int3& cells, const Real3& spacing, const PressureSide
   coarse_solver_ = CoarseSolver(levels_.back().shape);
 }
 
-void Multigrid::set_open_fractions(const FaceVector<OpenFraction>& open, const RowRanges& rows) {
+template <bool reactive>
+void BasicMultigrid<reactive>::set_open_fractions(const FaceVector<OpenFraction>& open, const RowRanges& rows,
+                                                  const Field<float>& reaction) {
   open_ = open;
-  finest_ = LevelOperator<OpenFraction>(levels_[0].shape, open, weights_);
+  levels_[0].reaction.total = reaction;
+  if constexpr (reactive)
+    finest_ = ReactiveOperator<OpenFraction>(levels_[0].shape, open, weights_, reaction);
+  else
+    finest_ = LevelOperator<OpenFraction>(levels_[0].shape, open, weights_);
   for (std::size_t l = 0; l < levels_.size(); ++l) {
     Level& level = levels_[l];
     const PressureSides& sides = level.shape.sides;
@@ -141,25 +156,36 @@ void Multigrid::set_open_fractions(const FaceVector<OpenFraction>& open, const R
   update({Box{{0, 0, 0}, levels_[0].shape.cells}});
 }
 
-void Multigrid::update(const std::vector<Box>& changed) const {
+template <bool reactive>
+void BasicMultigrid<reactive>::update(const std::vector<Box>& changed) const {
   const std::vector<Box> pieces = pieces_inside(levels_[0].shape, changed);
   for (std::size_t l = 1; l < levels_.size(); ++l) {
     const LevelShape& shape = levels_[l].shape;
     for (const Box& piece : pieces) {
       const Box cells = covering_cells(shape, piece);
       if (l == 1)
-        derive_coefficients(finest_, shape, cells, levels_[l].coefficients);
+        derive_coefficients<OpenFraction>(finest_, shape, cells, levels_[l].coefficients);
       else
-        derive_coefficients(levels_[l - 1].op, shape, cells, levels_[l].coefficients);
+        derive_coefficients<float>(levels_[l - 1].op, shape, cells, levels_[l].coefficients);
+      if constexpr (reactive)
+        derive_reaction(levels_[l - 1].shape, levels_[l - 1].reaction, shape, cells, levels_[l].reaction);
     }
   }
-  if (levels_.size() == 1)
-    coarse_solver_.set_operator(finest_);
-  else
-    coarse_solver_.set_operator(levels_.back().op);
+  set_coarse_operator();
 }
 
-Real Multigrid::apply() const {
+template <bool reactive>
+void BasicMultigrid<reactive>::set_coarse_operator() const {
+  const float* reaction = nullptr;
+  if constexpr (reactive) reaction = levels_.back().reaction.total.data();
+  if (levels_.size() == 1)
+    coarse_solver_.set_operator<OpenFraction>(finest_, reaction);
+  else
+    coarse_solver_.set_operator<float>(levels_.back().op, reaction);
+}
+
+template <bool reactive>
+Real BasicMultigrid<reactive>::apply() const {
   const std::size_t last = levels_.size() - 1;
   for (std::size_t l = 0; l < last; ++l) {
     const Level& level = levels_[l];
@@ -181,15 +207,20 @@ Real Multigrid::apply() const {
                             levels_[1].fields.solution);
 }
 
-std::size_t Multigrid::bytes() const {
+template <bool reactive>
+std::size_t BasicMultigrid<reactive>::bytes() const {
   std::size_t total = coarse_solver_.bytes();
   for (const Level& level : levels_) {
     total += bytes_of(level.fields.rhs) + bytes_of(level.fields.solution) + bytes_of(level.fields.scratch);
     for (int axis = 0; axis < 3; ++axis)
       if (level.coefficients[axis].is_allocated()) total += bytes_of(level.coefficients[axis]);
+    if (level.reaction.volume.is_allocated()) total += 2 * bytes_of(level.reaction.volume);
     total += bytes_of(level.rows) + bytes_of(level.transfer.prolongation_rows);
   }
   return total;
 }
+
+template class BasicMultigrid<false>;
+template class BasicMultigrid<true>;
 
 }  // namespace peclet::flow

@@ -4,6 +4,7 @@
 // Cells are merged in pairs along the axes of small spacing until a direct solver takes over; restriction
 // sums, prolongation copies, and the coarse operator is discretised anew on the coarse distances: half the
 // sum of the merged coefficients on regular cells [Braess1995].
+#include <type_traits>
 #include <vector>
 
 #include "flow/coarse_solver.hpp"
@@ -11,13 +12,22 @@
 
 namespace peclet::flow {
 
-class Multigrid {
- public:
-  Multigrid() = default;
-  Multigrid(const Int3& cells, const Real3& spacing, const PressureSides& sides);
+/// reactive: with a reaction term, see ReactiveOperator.
+template <bool reactive>
+class BasicMultigrid {
+  template <class Coefficient>
+  using Operator = std::conditional_t<reactive, ReactiveOperator<Coefficient>, LevelOperator<Coefficient>>;
 
-  /// Cells outside rows are solid for good. Shares the fractions and derives all levels from them.
-  void set_open_fractions(const FaceVector<OpenFraction>& open, const RowRanges& rows);
+ public:
+  BasicMultigrid() = default;
+  BasicMultigrid(const Int3& cells, const Real3& spacing, const PressureSides& sides);
+
+  /// Cells outside rows are solid for good. Shares the fractions and derives all levels from them. The same
+  /// with the reaction, if any, in units in which an open face along the smallest spacing has coefficient 1.
+  void set_open_fractions(const FaceVector<OpenFraction>& open, const RowRanges& rows,
+                          const Field<float>& reaction = {});
+  /// The part of the reaction that is in proportion to the volume, for a finest cell.
+  void set_volume_reaction(Real value) { levels_[0].reaction.finest_volume = value; }
   /// Derives the coarse faces anew that depend on the faces of cells in the boxes.
   void update(const std::vector<Box>& changed) const;
 
@@ -29,7 +39,7 @@ class Multigrid {
 
   /// The operator of the levels times this is the one in physical units: 1 over the smallest spacing squared.
   Real stiffness() const { return stiffness_; }
-  const LevelOperator<OpenFraction>& finest_operator() const { return finest_; }
+  const Operator<OpenFraction>& finest_operator() const { return finest_; }
   const RowRanges& rows() const { return levels_[0].rows; }
   const SweepPlan& plan() const { return levels_[0].plan; }
   int number_of_levels() const { return static_cast<int>(levels_.size()); }
@@ -40,18 +50,23 @@ class Multigrid {
     LevelShape shape;
     LevelFields fields;
     FaceVector<float> coefficients;  ///< not on the finest level
-    LevelOperator<float> op;         ///< not on the finest level
+    Operator<float> op;              ///< not on the finest level
+    LevelReaction reaction;          ///< where there is one
     RowRanges rows;
     SweepPlan plan;
     Transfer transfer;  ///< to the next coarser level
   };
 
+  void set_coarse_operator() const;
+
   Real3 weights_{1, 1, 1};
   Real stiffness_ = 1;
-  LevelOperator<OpenFraction> finest_;
+  Operator<OpenFraction> finest_;
   FaceVector<OpenFraction> open_;
   std::vector<Level> levels_;
   CoarseSolver coarse_solver_;
 };
+
+using Multigrid = BasicMultigrid<false>;
 
 }  // namespace peclet::flow

@@ -1,6 +1,7 @@
 #include "flow/poisson_operator.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace peclet::flow {
 namespace {
@@ -48,6 +49,32 @@ template void derive_coefficients(const LevelOperator<OpenFraction>&, const Leve
                                   const FaceVector<float>&);
 template void derive_coefficients(const LevelOperator<float>&, const LevelShape&, const Box&,
                                   const FaceVector<float>&);
+
+void derive_reaction(const LevelShape& fine, const LevelReaction& fine_reaction, const LevelShape& coarse,
+                     const Box& box, const LevelReaction& coarse_reaction) {
+  const LevelReaction from = fine_reaction, to = coarse_reaction;
+  const LevelShape fine_shape = fine;
+  const Real size = std::cbrt(static_cast<Real>(fine.factor[0]) * fine.factor[1] * fine.factor[2]);
+  const Real resistance = 0.5 / size;
+  Int3 ratio;
+  for (int axis = 0; axis < 3; ++axis) ratio[axis] = coarse.factor[axis] / fine.factor[axis];
+  for_each_cell(
+      "flow::coarsen_reaction", box, KOKKOS_LAMBDA(int i, int j, int k) {
+        Real exchange = 0, volume = 0;
+        for (int c = k * ratio[2]; c < (k + 1) * ratio[2] && c < fine_shape.cells[2]; ++c)
+          for (int b = j * ratio[1]; b < (j + 1) * ratio[1] && b < fine_shape.cells[1]; ++b)
+            for (int a = i * ratio[0]; a < (i + 1) * ratio[0] && a < fine_shape.cells[0]; ++a) {
+              const Real total = from.total(a, b, c);
+              if (!(total > 0)) continue;
+              const Real own = from.volume.data() ? from.volume(a, b, c) : from.finest_volume;
+              const Real wall = total > own ? total - own : 0;
+              volume += own;
+              exchange += wall / (1 + resistance * wall);
+            }
+        to.volume(i, j, k) = static_cast<float>(volume);
+        to.total(i, j, k) = static_cast<float>(volume + exchange);
+      });
+}
 
 RowRanges aligned_rows(const RowRanges& rows, const LevelShape& shape) {
   return coarse_rows(rows, shape, Int3{1, 1, 1});

@@ -202,6 +202,35 @@ struct LevelOperator {
   }
 };
 
+/// A row of the operator plus a reaction: (A phi)_cell + reaction_cell phi_cell.
+template <class Coefficient, class T>
+struct ReactiveRow : CoefficientRow<Coefficient, T> {
+  const float* reaction;
+
+  KOKKOS_INLINE_FUNCTION T diagonal(int i) const {
+    return CoefficientRow<Coefficient, T>::diagonal(i) + reaction[i];
+  }
+  KOKKOS_INLINE_FUNCTION T laplacian(const NeighbourRows<T>& phi, int i) const {
+    return CoefficientRow<Coefficient, T>::laplacian(phi, i) - reaction[i] * phi.centre[i];
+  }
+};
+
+/// The operator of one level plus a reaction, which is positive in cells that count and zero elsewhere.
+template <class Coefficient>
+struct ReactiveOperator : LevelOperator<Coefficient> {
+  const float* reaction = nullptr;
+
+  ReactiveOperator() = default;
+  ReactiveOperator(const LevelShape& level, const FaceVector<Coefficient>& faces, const Real3& weights,
+                   const Field<float>& field)
+      : LevelOperator<Coefficient>(level, faces, weights), reaction(field.data()) {}
+
+  template <class T>
+  KOKKOS_INLINE_FUNCTION ReactiveRow<Coefficient, T> row(int j, int k) const {
+    return {LevelOperator<Coefficient>::template row<T>(j, k), reaction + this->shape.layout(0, j, k)};
+  }
+};
+
 /// Rows of a level: they cover the rows of the children, and begin and end on whole vectors where they can.
 RowRanges coarse_rows(const RowRanges& fine, const LevelShape& coarse, const Int3& ratio);
 /// The same rows, widened to whole vectors.
@@ -212,5 +241,17 @@ RowRanges aligned_rows(const RowRanges& rows, const LevelShape& shape);
 template <class Coefficient>
 void derive_coefficients(const LevelOperator<Coefficient>& fine, const LevelShape& coarse, const Box& box,
                          const FaceVector<float>& coefficients);
+
+/// Reaction of one level: a part in proportion to the volume, and exchange with what lies outside (walls).
+struct LevelReaction {
+  Field<float> total,
+      volume;              // volume is not allocated on the finest level, where it is the same in every cell
+  Real finest_volume = 0;  // whose total is positive
+};
+
+/// Coarse reaction of the cells of a box: the sum over the children, from whose centre the centre of the
+/// coarse cell is half a child's width away, which adds to the resistance of the exchange.
+void derive_reaction(const LevelShape& fine, const LevelReaction& fine_reaction, const LevelShape& coarse,
+                     const Box& box, const LevelReaction& coarse_reaction);
 
 }  // namespace peclet::flow

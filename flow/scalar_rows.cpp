@@ -228,6 +228,7 @@ void build_scalar_rows(const ScalarGeometry& geometry, const Field<OpenFraction>
         cell_indices(n, m, cell);
         builder.fill(scratch(m), cell);
       });
+  chain_rows(state.layout(), rows.links);
 }
 
 void build_extension(const ScalarGeometry& geometry, const Field<OpenFraction>& state,

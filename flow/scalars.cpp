@@ -81,7 +81,7 @@ int Scalars::add(const std::string& name, const ScalarSettings& settings) {
     correction_ = Field<Real>("flow::scalar_correction", layout);
     scratch_ = Array<Index>("flow::scalar_scratch", static_cast<std::size_t>(grid_.number_of_cells()));
     diffusion_solver_.emplace(layout);
-    plan_ = SweepPlan(grid_.cells, Box{{0, 0, 0}, grid_.cells}, {false, false, false});
+    plan_ = SweepPlan(grid_.cells, Box{{0, 0, 0}, grid_.cells}, {true, true, true});
   }
   Scalar scalar;
   scalar.name = name;

@@ -9,18 +9,21 @@ KOKKOS_INLINE_FUNCTION float relaxed(float old, float weight, float target, floa
   return diagonal > 0 ? value : 0;
 }
 
+template <class Operator>
+using RowOf = decltype(Operator().template row<float>(0, 0));
+
 /// Jacobi step from zero.
-template <class Coefficient>
+template <class Operator>
 struct FirstStep {
   using Result = Nothing;
   static constexpr bool may_overrun = true;
-  LevelOperator<Coefficient> op;
+  Operator op;
   const float* rhs;
   float* out;
   float weight;
 
   struct Row {
-    CoefficientRow<Coefficient, float> c;
+    RowOf<Operator> c;
     const float* rhs;
     float* out;
     float weight;
@@ -35,18 +38,18 @@ struct FirstStep {
 };
 
 /// out = in + weight D^-1 (rhs - A in); the result is out . rhs if Total.
-template <class Coefficient, class Reduction>
+template <class Operator, class Reduction>
 struct JacobiStep {
   using Result = Reduction;
   static constexpr bool may_overrun = true;
-  LevelOperator<Coefficient> op;
+  Operator op;
   const float* rhs;
   float* in;
   float* out;
   float weight;
 
   struct Row {
-    CoefficientRow<Coefficient, float> c;
+    RowOf<Operator> c;
     NeighbourRows<float> in;
     const float* rhs;
     float* out;
@@ -64,17 +67,17 @@ struct JacobiStep {
 };
 
 /// out = rhs - A in.
-template <class Coefficient>
+template <class Operator>
 struct Residual {
   using Result = Nothing;
   static constexpr bool may_overrun = true;
-  LevelOperator<Coefficient> op;
+  Operator op;
   const float* rhs;
   float* in;
   float* out;
 
   struct Row {
-    CoefficientRow<Coefficient, float> c;
+    RowOf<Operator> c;
     NeighbourRows<float> in;
     const float* rhs;
     float* out;
@@ -178,24 +181,24 @@ struct Product {
   }
 };
 
-template <int RatioX, class Coefficient>
-void smooth_and_restrict_by(const LevelOperator<Coefficient>& op, const SweepPlan& plan,
-                            const RowRanges& rows, const Transfer& transfer, const LevelFields& fields,
+template <int RatioX, class Operator>
+void smooth_and_restrict_by(const Operator& op, const SweepPlan& plan, const RowRanges& rows,
+                            const Transfer& transfer, const LevelFields& fields,
                             const Field<float>& coarse_rhs) {
   const float* const rhs = fields.rhs.array().data();
   float* const solution = fields.solution.array().data();
   float* const scratch = fields.scratch.array().data();
-  sweep("flow::smooth", plan, Stage{rows, FirstStep<Coefficient>{op, rhs, scratch, first_weight}},
-        Stage{rows, JacobiStep<Coefficient, Nothing>{op, rhs, scratch, solution, second_weight}},
+  sweep("flow::smooth", plan, Stage{rows, FirstStep<Operator>{op, rhs, scratch, first_weight}},
+        Stage{rows, JacobiStep<Operator, Nothing>{op, rhs, scratch, solution, second_weight}},
         CoarseningStage{
-            Stage{rows, Residual<Coefficient>{op, rhs, solution, scratch}},
+            Stage{rows, Residual<Operator>{op, rhs, solution, scratch}},
             Stage{transfer.coarse_rows, SumOfChildren<RatioX>{op.shape, transfer.coarse_shape, transfer.ratio,
                                                               scratch, coarse_rhs.array().data()}},
             transfer.ratio});
 }
 
-template <int RatioX, class Coefficient>
-Real prolong_and_smooth_by(const LevelOperator<Coefficient>& op, const SweepPlan& plan, const RowRanges& rows,
+template <int RatioX, class Operator>
+Real prolong_and_smooth_by(const Operator& op, const SweepPlan& plan, const RowRanges& rows,
                            const Transfer& transfer, const LevelFields& fields,
                            const Field<float>& coarse_solution) {
   const float* const rhs = fields.rhs.array().data();
@@ -205,15 +208,15 @@ Real prolong_and_smooth_by(const LevelOperator<Coefficient>& op, const SweepPlan
                Stage{transfer.prolongation_rows,
                      AddToChildren<RatioX>{op.shape, transfer.coarse_shape, transfer.ratio,
                                            coarse_solution.array().data(), solution}},
-               Stage{rows, JacobiStep<Coefficient, Nothing>{op, rhs, solution, scratch, first_weight}},
-               Stage{rows, JacobiStep<Coefficient, Total>{op, rhs, scratch, solution, second_weight}})
+               Stage{rows, JacobiStep<Operator, Nothing>{op, rhs, solution, scratch, first_weight}},
+               Stage{rows, JacobiStep<Operator, Total>{op, rhs, scratch, solution, second_weight}})
       .sum;
 }
 
 }  // namespace
 
-template <class Coefficient>
-void smooth_and_restrict(const LevelOperator<Coefficient>& op, const SweepPlan& plan, const RowRanges& rows,
+template <class Operator>
+void smooth_and_restrict(const Operator& op, const SweepPlan& plan, const RowRanges& rows,
                          const Transfer& transfer, const LevelFields& fields,
                          const Field<float>& coarse_rhs) {
   if (transfer.ratio[0] == 2)
@@ -222,8 +225,8 @@ void smooth_and_restrict(const LevelOperator<Coefficient>& op, const SweepPlan& 
     smooth_and_restrict_by<1>(op, plan, rows, transfer, fields, coarse_rhs);
 }
 
-template <class Coefficient>
-Real prolong_and_smooth(const LevelOperator<Coefficient>& op, const SweepPlan& plan, const RowRanges& rows,
+template <class Operator>
+Real prolong_and_smooth(const Operator& op, const SweepPlan& plan, const RowRanges& rows,
                         const Transfer& transfer, const LevelFields& fields,
                         const Field<float>& coarse_solution) {
   if (transfer.ratio[0] == 2)
@@ -237,11 +240,19 @@ Real dot(const Field<float>& a, const Field<float>& b, const RowRanges& rows, co
 
 template void smooth_and_restrict(const LevelOperator<OpenFraction>&, const SweepPlan&, const RowRanges&,
                                   const Transfer&, const LevelFields&, const Field<float>&);
-template void smooth_and_restrict(const LevelOperator<float>&, const SweepPlan&, const RowRanges&,
-                                  const Transfer&, const LevelFields&, const Field<float>&);
 template Real prolong_and_smooth(const LevelOperator<OpenFraction>&, const SweepPlan&, const RowRanges&,
                                  const Transfer&, const LevelFields&, const Field<float>&);
+template void smooth_and_restrict(const LevelOperator<float>&, const SweepPlan&, const RowRanges&,
+                                  const Transfer&, const LevelFields&, const Field<float>&);
 template Real prolong_and_smooth(const LevelOperator<float>&, const SweepPlan&, const RowRanges&,
+                                 const Transfer&, const LevelFields&, const Field<float>&);
+template void smooth_and_restrict(const ReactiveOperator<OpenFraction>&, const SweepPlan&, const RowRanges&,
+                                  const Transfer&, const LevelFields&, const Field<float>&);
+template Real prolong_and_smooth(const ReactiveOperator<OpenFraction>&, const SweepPlan&, const RowRanges&,
+                                 const Transfer&, const LevelFields&, const Field<float>&);
+template void smooth_and_restrict(const ReactiveOperator<float>&, const SweepPlan&, const RowRanges&,
+                                  const Transfer&, const LevelFields&, const Field<float>&);
+template Real prolong_and_smooth(const ReactiveOperator<float>&, const SweepPlan&, const RowRanges&,
                                  const Transfer&, const LevelFields&, const Field<float>&);
 
 }  // namespace peclet::flow

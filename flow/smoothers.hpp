@@ -25,13 +25,13 @@ struct Transfer {
 };
 
 /// solution = two steps from zero; coarse_rhs = sum of the residual over the children.
-template <class Coefficient>
-void smooth_and_restrict(const LevelOperator<Coefficient>& op, const SweepPlan& plan, const RowRanges& rows,
+template <class Operator>
+void smooth_and_restrict(const Operator& op, const SweepPlan& plan, const RowRanges& rows,
                          const Transfer& transfer, const LevelFields& fields, const Field<float>& coarse_rhs);
 
 /// Adds the coarse solution to every child and smooths; returns solution . rhs.
-template <class Coefficient>
-Real prolong_and_smooth(const LevelOperator<Coefficient>& op, const SweepPlan& plan, const RowRanges& rows,
+template <class Operator>
+Real prolong_and_smooth(const Operator& op, const SweepPlan& plan, const RowRanges& rows,
                         const Transfer& transfer, const LevelFields& fields,
                         const Field<float>& coarse_solution);
 

@@ -218,8 +218,6 @@ Real Solver::largest_open_divergence() {
   return divergence_in_open_cells(boundary_.rows(), boundary_.open(), divergence_);
 }
 
-Real Solver::fluid_points(int c) const { return count_open_faces(velocity_rows_[c], boundary_.open()[c]); }
-
 Vec3 Solver::momentum_change() const {
   require_state(previous_time_step_ > 0, "momentum_change(): call step() first");
   const Real scale = settings_.density * grid_.cell_volume() / previous_time_step_;

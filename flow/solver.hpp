@@ -95,7 +95,7 @@ class Solver {
   /// Density / dt times the velocity change in the last step, summed over fluid faces, times the cell volume.
   Vec3 momentum_change() const;
   /// Number of fluid points of velocity component c.
-  Real fluid_points(int c) const;
+  Real fluid_points(int c) const { return fluid_points_[c]; }
 
   const FaceVector<Real>& velocity() const { return velocity_; }
   const Field<Real>& pressure() const { return pressure_; }
@@ -131,6 +131,7 @@ class Solver {
   void take_requested_poses();
   void promote_moved_bodies();
   void geometry_rebuilt();
+  void count_fluid_points();
   MomentumTerms momentum_terms() const;
   ScalarFlow scalar_flow(const FaceVector<Real>& carrier) const;
   void carry_scalars(bool old_velocity_counts);
@@ -144,6 +145,7 @@ class Solver {
   SweepPlan plan_;
   RowRanges velocity_rows_[3];  // points of each component
   SweepPlan velocity_plan_[3];
+  Real fluid_points_[3] = {0, 0, 0};
   bool geometry_stale_ = true, force_unbalanced_ = true, sides_stale_ = false, wall_velocity_stale_ = false,
        built_ = false;
 

@@ -53,6 +53,11 @@ void Solver::geometry_rebuilt() {
     velocity_plan_[c] = SweepPlan(grid_.cells, velocity_rows_[c].box, periodic.axis);
   }
   scalars_.geometry_changed();
+  count_fluid_points();
+}
+
+void Solver::count_fluid_points() {
+  for (int c = 0; c < 3; ++c) fluid_points_[c] = count_open_faces(velocity_rows_[c], boundary_.open()[c]);
 }
 
 void Solver::velocity_changed() {
@@ -180,6 +185,7 @@ void Solver::update_geometry() {
   boundary_.update(bodies_, pressure_);
   pressure_solver_.update_open_fractions(boundary_.changed());
   if (!boundary_.changed().empty()) scalars_.geometry_changed();
+  count_fluid_points();
   impose_body_motion();
   geometry_stale_ = false;
   wall_velocity_stale_ = false;

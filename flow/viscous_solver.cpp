@@ -2,32 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <type_traits>
+
+#include "flow/fluid_residual.hpp"
 
 namespace peclet::flow {
 namespace {
 
 /// Sweeps between two evaluations of the residual in double precision.
 constexpr int sweeps_per_cycle_limit = 40;
+/// Where more sweeps would be needed in all, multigrid is faster.
+constexpr int sweeps_limit = 100;
 /// Reduction that single-precision sweeps can deliver in one cycle.
 constexpr Real cycle_reduction_limit = 1e-5;
-
-template <class T>
-struct Diffusion {
-  T x, y, z;  // theta dt nu / h^2
-  T diagonal;
-
-  explicit Diffusion(const ViscousSystem& system) {
-    T along[3];
-    for (int a = 0; a < 3; ++a)
-      along[a] = static_cast<T>(system.diffusion / (system.grid.spacing[a] * system.grid.spacing[a]));
-    x = along[0];
-    y = along[1];
-    z = along[2];
-    diagonal = 1 + 2 * (x + y + z);
-  }
-  KOKKOS_INLINE_FUNCTION T along(int axis) const { return axis == 0 ? x : (axis == 1 ? y : z); }
-};
 
 /// First sweep from e = 0: e = scale * residual.
 struct FirstSweep {
@@ -80,123 +69,106 @@ struct Sweep {
 };
 
 /// residual -= A e and correction += e (or = e) in double precision.
+template <bool is_first>
 struct Accumulate {
   using Result = Nothing;
-  static constexpr bool may_overrun = false;
+  static constexpr bool may_overrun = true;
   Layout layout;
   const float* e;
   Real *residual, *correction;
   Diffusion<Real> d;
-  bool is_first;
 
   struct Row {
     const float* e;
     Real *residual, *correction;
     Index sy, sz;
     Real x, y, z, diagonal;
-    bool is_first;
     KOKKOS_INLINE_FUNCTION void operator()(int i) const {
       const Real here = e[i];
       const Real neighbors = x * (Real{e[i - 1]} + Real{e[i + 1]}) + y * (Real{e[i - sy]} + Real{e[i + sy]}) +
                              z * (Real{e[i - sz]} + Real{e[i + sz]});
       residual[i] += neighbors - diagonal * here;
-      correction[i] = is_first ? here : correction[i] + here;
+      if constexpr (is_first)
+        correction[i] = here;
+      else
+        correction[i] += here;
     }
   };
   KOKKOS_INLINE_FUNCTION Row row(int j, int k) const {
     const Index n = layout(0, j, k);
-    return {e + n, residual + n, correction + n, layout.pitch_y, layout.pitch_z, d.x,
-            d.y,   d.z,          d.diagonal,     is_first};
-  }
-};
-
-/// The residual of fluid points.
-struct FluidResidual {
-  using Result = Norms;
-  static constexpr bool may_overrun = true;
-  Layout layout;
-  const OpenFraction* open;
-  const Real* residual;
-
-  struct Row {
-    const OpenFraction* open;
-    const Real* residual;
-    KOKKOS_INLINE_FUNCTION Real operator()(int i) const { return open[i] ? residual[i] : 0.0; }
-  };
-  KOKKOS_INLINE_FUNCTION Row row(int j, int k) const {
-    const Index n = layout(0, j, k);
-    return {open + n, residual + n};
-  }
-};
-
-Norms residual_norms(const ViscousSystem& system, const Field<Real>& residual) {
-  const FluidResidual body{residual.layout(), system.open.data(), residual.data()};
-  return sweep("flow::viscous_residual_norm", *system.plan, Stage{system.rows, body});
-}
-
-/// Row of a wall in (1 - theta dt nu L): sum of weighted fluid neighbours and diagonal.
-template <class T>
-struct WallRow {
-  T neighbors = 0, diagonal = 1;
-
-  KOKKOS_INLINE_FUNCTION WallRow(const WallRows& rows, Index row, const Field<float>& e,
-                                 const Diffusion<T>& diffusion) {
-    const Index p = rows.face(row);
-    for (int d = 0; d < WallRows::directions; ++d) {
-      const T coefficient = diffusion.along(d / 2) * static_cast<T>(rows.weight(row, d));
-      const Index step = e.layout().stride(d / 2);
-      diagonal += coefficient;
-      if (!rows.is_wall(row, d)) neighbors += coefficient * static_cast<T>(e[d % 2 ? p + step : p - step]);
-    }
+    return {e + n, residual + n, correction + n, layout.pitch_y, layout.pitch_z, d.x, d.y, d.z, d.diagonal};
   }
 };
 
 /// First sweep from e = 0 at walls.
-void start_wall_rows(const ViscousSystem& system, const WallRows& rows, const Field<Real>& residual,
-                     float weight, const Field<float>& e) {
-  const Diffusion<float> diffusion(system);
-  const WallRows w = rows;
-  for_each(
-      "flow::viscous_start_walls", rows.count, KOKKOS_LAMBDA(Index row) {
-        if (w.superseded(row)) return;
-        float diagonal = 1;
-        for (int d = 0; d < WallRows::directions; ++d) diagonal += diffusion.along(d / 2) * w.weight(row, d);
-        const Index p = w.face(row);
-        e[p] = weight * static_cast<float>(residual[p]) / diagonal;
-      });
-}
+struct FirstWallSweep {
+  WallRows rows;
+  Field<Real> residual;
+  Field<float> e;
+  Diffusion<float> diffusion;
+  float weight;
 
-void sweep_wall_rows(const ViscousSystem& system, const WallRows& rows, const Field<Real>& residual,
-                     float weight, const Field<float>& e, const Field<float>& next) {
-  const Diffusion<float> diffusion(system);
-  const WallRows w = rows;
-  for_each(
-      "flow::viscous_sweep_walls", rows.count, KOKKOS_LAMBDA(Index row) {
-        if (w.superseded(row)) return;
-        const Index p = w.face(row);
-        const WallRow<float> wall(w, row, e, diffusion);
-        next[p] = e[p] + weight * ((static_cast<float>(residual[p]) + wall.neighbors) / wall.diagonal - e[p]);
-      });
-}
+  KOKKOS_INLINE_FUNCTION void operator()(Index row) const {
+    if (rows.superseded(row)) return;
+    float diagonal = 1;
+    for (int d = 0; d < WallRows::directions; ++d) diagonal += diffusion.along(d / 2) * rows.weight(row, d);
+    const Index p = rows.face(row);
+    e[p] = weight * static_cast<float>(residual[p]) / diagonal;
+  }
+};
+
+struct WallSweep {
+  WallRows rows;
+  Field<Real> residual;
+  Field<float> e, next;
+  Diffusion<float> diffusion;
+  float weight;
+
+  KOKKOS_INLINE_FUNCTION void operator()(Index row) const {
+    if (rows.superseded(row)) return;
+    const Index p = rows.face(row);
+    const WallRow<float> wall(rows, row, e, diffusion);
+    next[p] = e[p] + weight * ((static_cast<float>(residual[p]) + wall.neighbors) / wall.diagonal - e[p]);
+  }
+};
 
 /// At wall rows the regular formula was not the operator: undone and done right.
-void correct_residual_at_walls(const ViscousSystem& system, const WallRows& rows, const Field<float>& e,
-                               const Field<Real>& residual) {
+struct WallCorrection {
+  WallRows rows;
+  Field<Real> residual;
+  Field<float> e;
+  Diffusion<Real> diffusion;
+
+  KOKKOS_INLINE_FUNCTION void operator()(Index row) const {
+    if (rows.superseded(row)) return;
+    const Index p = rows.face(row);
+    const WallRow<Real> wall(rows, row, e, diffusion);
+    Real regular = 0;
+    for (int d = 0; d < WallRows::directions; ++d) {
+      const Index step = e.layout().stride(d / 2);
+      regular += diffusion.along(d / 2) * Real{e[d % 2 ? p + step : p - step]};
+    }
+    residual[p] += (wall.neighbors - regular) - (wall.diagonal - diffusion.diagonal) * Real{e[p]};
+  }
+};
+
+/// residual -= A e and correction += e (or = e); the result is the residual of the fluid points.
+template <bool is_first>
+auto residual_stage(const ViscousSystem& system, const Field<float>& e, const Field<Real>& residual,
+                    const Field<Real>& correction) {
+  const Layout layout = system.layout();
   const Diffusion<Real> diffusion(system);
-  const WallRows w = rows;
-  const Field<Real> r = residual;
-  for_each(
-      "flow::viscous_residual_walls", rows.count, KOKKOS_LAMBDA(Index row) {
-        if (w.superseded(row)) return;
-        const Index p = w.face(row);
-        const WallRow<Real> wall(w, row, e, diffusion);
-        Real regular = 0;
-        for (int d = 0; d < WallRows::directions; ++d) {
-          const Index step = e.layout().stride(d / 2);
-          regular += diffusion.along(d / 2) * Real{e[d % 2 ? p + step : p - step]};
-        }
-        r[p] += (wall.neighbors - regular) - (wall.diagonal - diffusion.diagonal) * Real{e[p]};
-      });
+  const WallRows &fixed = system.fixed_rows, &moving = system.moving_rows;
+  return Stage(system.rows,
+               Accumulate<is_first>{layout, e.data(), residual.data(), correction.data(), diffusion},
+               at_walls(fixed, WallCorrection{fixed, residual, e, diffusion}),
+               at_walls(moving, WallCorrection{moving, residual, e, diffusion}),
+               OnRows<GhostRounding>{{layout,
+                                      GhostRules(layout, system.sides, system.component),
+                                      e.data(),
+                                      residual.data(),
+                                      {diffusion.x, diffusion.y, diffusion.z}}},
+               FluidResidual{layout, system.open.data(), residual.data()});
 }
 
 Spectrum bound_spectrum(const ViscousSystem& system) {
@@ -232,30 +204,43 @@ float chebyshev_weight(int m, int n, const Spectrum& spectrum) {
 ViscousSolver::ViscousSolver(const Layout& layout)
     : iterate_("flow::viscous_iterate", layout), next_("flow::viscous_next", layout) {}
 
-std::size_t ViscousSolver::bytes() const { return 2 * sizeof(float) * iterate_.array().extent(0); }
+std::size_t ViscousSolver::bytes() const {
+  return 2 * sizeof(float) * iterate_.array().extent(0) + (krylov_ ? krylov_->bytes() : 0);
+}
 
 SolverReport ViscousSolver::solve(const ViscousSystem& system, const Field<Real>& residual,
                                   const Field<Real>& correction, Real relative_tolerance, Real velocity_scale,
                                   int iteration_limit, Real& residual_sum) {
   const Spectrum spectrum = bound_spectrum(system);
   SolverReport report;
-  Norms norms = residual_norms(system, residual);
+  Norms norms =
+      sweep("flow::viscous_start", *system.plan,
+            Stage(system.rows, FluidResidual{system.layout(), system.open.data(), residual.data()}));
   const Real scale = std::max(velocity_scale, norms.largest);
   const Real tolerance = relative_tolerance * scale;
+  const auto wanted_reduction = [&](Real least) {
+    return norms.largest > 0 ? std::clamp(0.5 * tolerance / norms.largest, least, 0.5) : 0.5;
+  };
+  // rows of scalars in small cut cells are beyond the preconditioner
+  const bool is_velocity = system.component >= 0;
+  const bool is_stiff =
+      is_velocity && chebyshev_sweeps(spectrum, wanted_reduction(std::numeric_limits<Real>::min())) >
+                         std::min(sweeps_limit, iteration_limit);
+  if (is_stiff) prepare_krylov(system);
   bool is_first = true;
-  while (is_first ||
-         (norms.largest > tolerance && report.iterations < iteration_limit && std::isfinite(norms.sum))) {
-    const Real wanted = norms.largest > 0 ? 0.5 * tolerance / norms.largest : 0.5;
-    const int sweeps = std::min({chebyshev_sweeps(spectrum, std::clamp(wanted, cycle_reduction_limit, 0.5)),
-                                 sweeps_per_cycle_limit, iteration_limit - report.iterations});
-    run_sweeps(system, residual, sweeps, spectrum);
-    const Accumulate body{residual.layout(), iterate_.data(),         residual.data(),
-                          correction.data(), Diffusion<Real>(system), is_first};
-    sweep("flow::viscous_residual", *system.plan, Stage{system.rows, body});
-    correct_residual_at_walls(system, system.fixed_rows, iterate_, residual);
-    correct_residual_at_walls(system, system.moving_rows, iterate_, residual);
-    report.iterations += sweeps;
-    norms = residual_norms(system, residual);
+  int setbacks = 0;
+  while (is_first || (norms.largest > tolerance && report.iterations < iteration_limit && setbacks < 2 &&
+                      std::isfinite(norms.sum))) {
+    const Real before = norms.largest, wanted = wanted_reduction(cycle_reduction_limit);
+    const int left = iteration_limit - report.iterations;
+    const auto cycle = [&](auto first) {
+      if (is_stiff) return krylov_cycle<first>(system, residual, correction, before, wanted, left, report);
+      const int sweeps = std::min({chebyshev_sweeps(spectrum, wanted), sweeps_per_cycle_limit, left});
+      report.iterations += sweeps;
+      return run_sweeps<first>(system, residual, correction, sweeps, spectrum);
+    };
+    norms = is_first ? cycle(std::true_type()) : cycle(std::false_type());
+    if (is_stiff && norms.largest > 0.5 * before) ++setbacks;
     is_first = false;
   }
   report.residual = scale > 0 ? norms.largest / scale : 0;
@@ -264,31 +249,50 @@ SolverReport ViscousSolver::solve(const ViscousSystem& system, const Field<Real>
   return report;
 }
 
-void ViscousSolver::run_sweeps(const ViscousSystem& system, const Field<Real>& residual, int sweeps,
-                               const Spectrum& spectrum) {
-  const Layout& layout = residual.layout();
+void ViscousSolver::prepare_krylov(const ViscousSystem& system) {
+  if (!krylov_ || !krylov_->fits(system.sides))
+    krylov_ = std::make_shared<ViscousKrylov>(system.grid, system.sides);
+  krylov_->set_system(system);
+}
+
+template <bool is_first>
+Norms ViscousSolver::krylov_cycle(const ViscousSystem& system, const Field<Real>& residual,
+                                  const Field<Real>& correction, Real largest, Real wanted, int limit,
+                                  SolverReport& report) {
+  // what rounding of the iterate leaves of the residual
+  const Real attainable = std::numeric_limits<float>::epsilon() * Diffusion<Real>(system).diagonal;
+  const Real reduction = std::min(0.25, std::max(wanted, attainable));
+  report.iterations += krylov_->solve(system, residual, largest, reduction, limit, iterate_, next_);
+  return sweep("flow::viscous_residual", *system.plan,
+               residual_stage<is_first>(system, iterate_, residual, correction));
+}
+
+template <bool is_first>
+Norms ViscousSolver::run_sweeps(const ViscousSystem& system, const Field<Real>& residual,
+                                const Field<Real>& correction, int sweeps, const Spectrum& spectrum) {
+  const Layout layout = system.layout();
+  const WallRows &fixed = system.fixed_rows, &moving = system.moving_rows;
   const Diffusion<float> diffusion(system);
-  const float first = chebyshev_weight(0, sweeps, spectrum);
-  sweep("flow::viscous_start", *system.plan,
-        Stage{system.rows, FirstSweep{layout, residual.data(), iterate_.data(), first / diffusion.diagonal}});
-  start_wall_rows(system, system.fixed_rows, residual, first, iterate_);
-  start_wall_rows(system, system.moving_rows, residual, first, iterate_);
-  for (int m = 1; m < sweeps; ++m) {
-    const float weight = chebyshev_weight(m, sweeps, spectrum);
-    fill_correction_ghosts(iterate_, system.component, system.sides);
-    const Sweep body{layout,
-                     residual.data(),
-                     iterate_.data(),
-                     next_.data(),
-                     diffusion,
-                     1.0F - weight,
-                     weight / diffusion.diagonal};
-    sweep("flow::viscous_sweep", *system.plan, Stage{system.rows, body});
-    sweep_wall_rows(system, system.fixed_rows, residual, weight, iterate_, next_);
-    sweep_wall_rows(system, system.moving_rows, residual, weight, iterate_, next_);
-    std::swap(iterate_, next_);
-  }
-  fill_correction_ghosts(iterate_, system.component, system.sides);
+  const Field<float> iterates[2] = {iterate_, next_};
+
+  const float first_weight = chebyshev_weight(0, sweeps, spectrum);
+  const Stage first(system.rows,
+                    FirstSweep{layout, residual.data(), iterate_.data(), first_weight / diffusion.diagonal},
+                    at_walls(fixed, FirstWallSweep{fixed, residual, iterate_, diffusion, first_weight}),
+                    at_walls(moving, FirstWallSweep{moving, residual, iterate_, diffusion, first_weight}),
+                    ghosts_of(system, iterate_));
+  const auto repeated = [&](int m) {
+    const float weight = chebyshev_weight(m + 1, sweeps, spectrum);
+    const Field<float>&e = iterates[m % 2], &next = iterates[(m + 1) % 2];
+    return Stage(system.rows,
+                 Sweep{layout, residual.data(), e.data(), next.data(), diffusion, 1.0F - weight,
+                       weight / diffusion.diagonal},
+                 at_walls(fixed, WallSweep{fixed, residual, e, next, diffusion, weight}),
+                 at_walls(moving, WallSweep{moving, residual, e, next, diffusion, weight}),
+                 ghosts_of(system, next));
+  };
+  const auto last = residual_stage<is_first>(system, iterates[(sweeps - 1) % 2], residual, correction);
+  return sweep_series("flow::viscous_sweeps", *system.plan, first, sweeps - 1, repeated, last);
 }
 
 }  // namespace peclet::flow

@@ -6,26 +6,14 @@
 // s = b / (1 + b), b = theta dt nu sum_a 2 / h_a^2; rows beside a Wall or Inflow side of the box, whose
 // ghosts follow a parabola, reach further, to (1 + 8/3 b) / (1 + b). Sweeps run in single precision on the
 // residual, which is then recomputed in double precision, until the largest residual falls below the
-// tolerance.
-#include "core/field.hpp"
-#include "core/sweep.hpp"
-#include "flow/domain_sides.hpp"
+// tolerance. Where that takes many sweeps, ViscousKrylov takes their place: an iteration is one of its.
+#include <memory>
+
 #include "flow/settings.hpp"
-#include "flow/wall_rows.hpp"
+#include "flow/viscous_krylov.hpp"
+#include "flow/viscous_operator.hpp"
 
 namespace peclet::flow {
-
-/// One component's linear system.
-struct ViscousSystem {
-  Grid grid;
-  DomainSides sides;
-  int component = 0;
-  Real diffusion = 0;  // theta dt nu
-  const SweepPlan* plan = nullptr;
-  RowRanges rows;
-  Field<OpenFraction> open;  // 0: row of a solid point, left out of norms
-  WallRows fixed_rows, moving_rows;
-};
 
 /// Interval that holds the eigenvalues of the scaled operator.
 struct Spectrum {
@@ -45,11 +33,20 @@ class ViscousSolver {
   std::size_t bytes() const;
 
  private:
-  /// iterate_ = e after that many sweeps from zero, ghosts filled.
-  void run_sweeps(const ViscousSystem& system, const Field<Real>& residual, int sweeps,
-                  const Spectrum& spectrum);
+  /// That many sweeps from zero make the correction or are added to it; returns the norms of the residual
+  /// that is left.
+  template <bool is_first>
+  Norms run_sweeps(const ViscousSystem& system, const Field<Real>& residual, const Field<Real>& correction,
+                   int sweeps, const Spectrum& spectrum);
+
+  void prepare_krylov(const ViscousSystem& system);
+  /// The same with ViscousKrylov: reduces the residual, at first `largest`, to `wanted` times that if it can.
+  template <bool is_first>
+  Norms krylov_cycle(const ViscousSystem& system, const Field<Real>& residual, const Field<Real>& correction,
+                     Real largest, Real wanted, int limit, SolverReport& report);
 
   Field<float> iterate_, next_;
+  std::shared_ptr<ViscousKrylov> krylov_;  // from the first stiff system on
 };
 
 }  // namespace peclet::flow

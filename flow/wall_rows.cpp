@@ -11,7 +11,9 @@ void WallRows::reserve(Index capacity) {
   owner = Kokkos::View<int* [directions], MemorySpace>("flow::wall_rows.owner", size);
   walls = Array<std::uint8_t>("flow::wall_rows.walls", size);
   wall_sum = Array<Real>("flow::wall_rows.wall_sum", size);
+  dilation = Array<Real>("flow::wall_rows.dilation", size);
   superseded = Array<std::uint8_t>("flow::wall_rows.superseded", size);
+  chains.next = Array<int>("flow::wall_rows.next", size);
 }
 
 namespace {
@@ -55,6 +57,22 @@ KOKKOS_INLINE_FUNCTION void fill_row(const WallRows& rows, Index row, int c, con
 
 }  // namespace
 
+void chain_rows(const Layout& layout, WallRows& rows) {
+  RowChains& chains = rows.chains;
+  chains.rows_per_plane = layout.cells[1] + 1;
+  const auto number_of_rows = static_cast<std::size_t>(chains.rows_per_plane * (layout.cells[2] + 1));
+  if (chains.first.extent(0) != number_of_rows)
+    chains.first = Array<int>("flow::wall_rows.first", number_of_rows);
+  Kokkos::deep_copy(chains.first, -1);
+  const WallRows target = rows;
+  for_each(
+      "flow::chain_wall_rows", rows.count, KOKKOS_LAMBDA(Index row) {
+        const Int3 cell = cell_of(layout, target.face(row));
+        int& first = target.chains.first(static_cast<std::size_t>(target.chains.row(cell[1], cell[2])));
+        target.chains.next(row) = Kokkos::atomic_exchange(&first, static_cast<int>(row));
+      });
+}
+
 void build_wall_rows(int c, const SolidSampler& solid, const FaceVector<OpenFraction>& open,
                      const DomainSides& sides, const RegionList& regions, const Array<Index>& scratch,
                      WallRows& rows) {
@@ -80,6 +98,7 @@ void build_wall_rows(int c, const SolidSampler& solid, const FaceVector<OpenFrac
         const bool is_kept = (n + 1 < total ? scratch(n + 1) : kept) > row;
         if (is_kept) fill_row(target, row, c, sampler, fraction, box, region.cell(n));
       });
+  chain_rows(layout, rows);
 }
 
 void refresh_wall_velocity(int c, const SolidSampler& solid, const WallRows& rows) {

@@ -1,6 +1,7 @@
 #pragma once
 // Velocity points whose stencil touches a wall: a compact list beside the regular grid sweep.
 #include "core/field.hpp"
+#include "core/sweep_stage.hpp"
 #include "flow/domain_sides.hpp"
 #include "flow/open_fraction.hpp"
 #include "flow/region_list.hpp"
@@ -28,7 +29,9 @@ struct WallRows {
   Kokkos::View<int* [directions], MemorySpace> owner;     // body of each wall; of the nearest body elsewhere
   Array<std::uint8_t> walls;                              // bit d: there is a wall in direction d
   Array<Real> wall_sum;            // sum over walls of weight * wall velocity / spacing^2
+  Array<Real> dilation;            // v_c div(v), see advective_leak
   Array<std::uint8_t> superseded;  // rows of fixed bodies inside a moving region
+  RowChains chains;                // by row of cells
 
   KOKKOS_INLINE_FUNCTION bool is_wall(Index row, int d) const { return (walls(row) >> d) & 1; }
 
@@ -42,8 +45,8 @@ struct WallRows {
   void reserve(Index capacity);
   Index bytes() const {
     constexpr std::size_t per_row =
-        sizeof(Index) + directions * (sizeof(float) + sizeof(int)) + sizeof(Real) + 2;
-    return static_cast<Index>(face.extent(0) * per_row);
+        sizeof(Index) + directions * (sizeof(float) + sizeof(int)) + 2 * sizeof(Real) + sizeof(int) + 2;
+    return static_cast<Index>(face.extent(0) * per_row + chains.first.extent(0) * sizeof(int));
   }
 };
 
@@ -84,6 +87,9 @@ KOKKOS_INLINE_FUNCTION bool touches_wall(const FaceVector<OpenFraction>& open, c
 void build_wall_rows(int c, const SolidSampler& solid, const FaceVector<OpenFraction>& open,
                      const DomainSides& sides, const RegionList& regions, const Array<Index>& scratch,
                      WallRows& rows);
+
+/// Chains the rows by row of cells once their faces are known.
+void chain_rows(const Layout& layout, WallRows& rows);
 
 /// Recomputes wall_sum from the present velocities of the bodies.
 void refresh_wall_velocity(int c, const SolidSampler& solid, const WallRows& rows);

@@ -40,12 +40,6 @@ Real largest_index(const RowRanges& ranges, Real offset) {
       KOKKOS_LAMBDA(int i, int j, int k) { return offset + i + 10.0 * j + 100.0 * k; });
 }
 
-MaxAndSum magnitude_and_sum(const RowRanges& ranges) {
-  return max_and_sum_cells(
-      "magnitude_and_sum", ranges,
-      KOKKOS_LAMBDA(int i, int j, int k) { return (i % 2 ? -1.0 : 1.0) * (i + j + k); });
-}
-
 const Int3 cells{7, 5, 4};
 const Box inner{{1, 0, 2}, {6, 4, 4}};
 
@@ -94,21 +88,17 @@ TEST(Loop, SumsAndMaximaRespectTheRangeOfEveryRow) {
 
 TEST(Loop, TheLargestOfNegativeNumbersIsZero) { EXPECT_EQ(largest_index(RowRanges(inner), -1000), 0); }
 
-TEST(Loop, TheLargestMagnitudeAndTheSumComeTogether) {
-  const MaxAndSum result = magnitude_and_sum(RowRanges(Int3{3, 2, 2}));
-  EXPECT_EQ(result.max, 4);  // (2, 1, 1)
-  EXPECT_EQ(result.sum, 4.0 * (0 - 1 + 2) + 1.0 * (0 + 1 + 1 + 2));
-}
-
 Index keep_multiples(Index count, Index step, const Array<Index>& positions) {
   return enumerate("keep_multiples", count, positions, KOKKOS_LAMBDA(Index n) { return n % step == 0; });
 }
 
 TEST(Enumerate, NumbersWhatIsKeptInOrder) {
-  const Array<Index> positions("positions", 20);
-  EXPECT_EQ(keep_multiples(20, 3, positions), 7);
-  const std::vector<Index> host = copy_to_host(positions);
-  for (std::size_t n = 0; n < 20; ++n) EXPECT_EQ(host[n], static_cast<Index>((n + 2) / 3));
+  for (const std::size_t count : {20, 2000}) {  // by one thread, by several
+    const Array<Index> positions("positions", count);
+    EXPECT_EQ(keep_multiples(static_cast<Index>(count), 3, positions), static_cast<Index>((count + 2) / 3));
+    const std::vector<Index> host = copy_to_host(positions);
+    for (std::size_t n = 0; n < count; ++n) EXPECT_EQ(host[n], static_cast<Index>((n + 2) / 3));
+  }
 }
 
 TEST(Enumerate, OfNothingIsNothing) { EXPECT_EQ(keep_multiples(0, 3, Array<Index>()), 0); }
@@ -121,6 +111,23 @@ TEST(ExclusiveSum, AddsWhatComesBefore) {
   const Array<Index> offsets("offsets", 6);
   EXPECT_EQ(triangular_numbers(5, offsets), 15);
   EXPECT_EQ(copy_to_host(offsets), (std::vector<Index>{0, 1, 3, 6, 10, 15}));
+  const Array<Index> many("offsets", 1001);
+  EXPECT_EQ(triangular_numbers(1000, many), 500500);
+  EXPECT_EQ(copy_to_host(many)[600], 600 * 601 / 2);
+}
+
+Real sum_of_numbers(Index count) {
+  return sum_each("sum_of_numbers", count, KOKKOS_LAMBDA(Index n) { return static_cast<Real>(n); });
+}
+Real largest_number(Index count) {
+  return max_each("largest_number", count, KOKKOS_LAMBDA(Index n) { return static_cast<Real>(n) - 3; });
+}
+
+TEST(Lists, AreReducedByOneThreadOrSeveral) {
+  for (const Index count : {0, 2, 20, 2000}) {
+    EXPECT_EQ(sum_of_numbers(count), static_cast<Real>(count * (count - 1) / 2));
+    EXPECT_EQ(largest_number(count), count < 4 ? 0 : static_cast<Real>(count - 4));
+  }
 }
 
 }  // namespace

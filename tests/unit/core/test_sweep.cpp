@@ -73,6 +73,27 @@ TEST(Sweep, StagesSeeWhatTheStageBeforeWrote) {
   }
 }
 
+TEST(Sweep, ASeriesIsItsStagesOneAfterTheOther) {
+  for (const Int3& n : {Int3{6, 1, 5}, Int3{7, 3, 4}, Int3{20, 24, 64}, Int3{33, 41, 2}})
+    for (const int repetitions : {0, 1, 2, 9}) {
+      const Layout layout(n);
+      const bool wraps[3] = {true, true, true};
+      const SweepPlan plan(n, Box{{0, 0, 0}, n}, wraps);
+      const RowRanges rows(n);
+      const Field<Real> in = integers(n), a("a", layout), b("b", layout), c("c", layout), d("d", layout);
+      const auto stage = [&](const Field<Real>& from, const Field<Real>& to) {
+        return Stage(rows, AddNeighbours{layout, n, from.data(), to.data()});
+      };
+      const Field<Real>&odd = repetitions % 2 ? b : a, &even = repetitions % 2 ? a : b;
+      const Total total = sweep_series(
+          "test", plan, stage(in, a), repetitions, [&](int m) { return m % 2 ? stage(b, a) : stage(a, b); },
+          stage(odd, even));
+      Real expected = plain(n, in, c);
+      for (int m = 0; m <= repetitions; ++m) expected = m % 2 ? plain(n, d, c) : plain(n, c, d);
+      EXPECT_EQ(total.sum, expected);
+    }
+}
+
 struct Value {
   using Result = Norms;
   static constexpr bool may_overrun = true;
@@ -84,6 +105,70 @@ struct Value {
   };
   KOKKOS_INLINE_FUNCTION Row row(int j, int k) const { return {in + layout(0, j, k)}; }
 };
+
+/// Sets a row to 1.
+struct SetToOne {
+  using Result = Nothing;
+  static constexpr bool may_overrun = false;
+  Layout layout;
+  Real* out;
+  struct Row {
+    Real* out;
+    KOKKOS_INLINE_FUNCTION void operator()(int i) const { out[i] = 1; }
+  };
+  KOKKOS_INLINE_FUNCTION Row row(int j, int k) const { return {out + layout(0, j, k)}; }
+};
+
+/// Adds 10 at listed cells.
+struct AddAtEntry {
+  Array<Index> cell;
+  Real* out;
+  KOKKOS_INLINE_FUNCTION void operator()(Index n) const { out[cell(n)] += 10; }
+};
+
+/// Triples rows.
+struct TripleRow {
+  Layout layout;
+  Real* out;
+  void finish_row(int j, int k) const {
+    for (int i = 0; i < layout.cells[0]; ++i) out[layout(i, j, k)] *= 3;
+  }
+  void finish() const {
+    const TripleRow self = *this;
+    for_each_cell(
+        "triple", RowRanges(layout.cells),
+        KOKKOS_LAMBDA(int i, int j, int k) { self.out[self.layout(i, j, k)] *= 3; });
+  }
+};
+
+TEST(Sweep, PartsOfAStageFollowEachOther) {
+  const Int3 n{5, 4, 6};
+  const Layout layout(n);
+  const Field<Real> field("field", layout);
+  RowChains chains;
+  chains.rows_per_plane = n[1];
+  chains.first = Array<int>("first", 24);
+  chains.next = Array<int>("next", 3);
+  Kokkos::deep_copy(chains.first, -1);
+  const Array<Index> cells("cells", 3);
+  cells(0) = layout(1, 2, 3);  // two in one row
+  cells(1) = layout(4, 2, 3);
+  cells(2) = layout(0, 0, 5);
+  chains.first(2 + 4 * 3) = 1;
+  chains.next(1) = 0;
+  chains.next(0) = -1;
+  chains.first(0 + 4 * 5) = 2;
+  chains.next(2) = -1;
+  const bool wraps[3] = {false, false, false};
+  const Norms norms = sweep("test", SweepPlan(n, Box{{0, 0, 0}, n}, wraps),
+                            Stage(RowRanges(n), SetToOne{layout, field.data()},
+                                  AtEntries<AddAtEntry>{chains, 3, {cells, field.data()}},
+                                  OnRows<TripleRow>{{layout, field.data()}}, Value{layout, field.data()}));
+  EXPECT_EQ(norms.sum, 3 * (120 + 30));
+  EXPECT_EQ(norms.largest, 33);
+  EXPECT_EQ(field(4, 2, 3), 33);
+  EXPECT_EQ(field(3, 2, 3), 3);
+}
 
 TEST(Sweep, PaddingDoesNotEnterNorms) {
   const Int3 n{21, 5, 6};

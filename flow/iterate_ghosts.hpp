@@ -1,0 +1,80 @@
+#pragma once
+// Ghosts of a correction during a sweep: one layer, no edges, filled row by row as soon as the values are
+// there.
+#include "core/sweep_stage.hpp"
+#include "flow/domain_sides.hpp"
+
+namespace peclet::flow {
+
+/// What a side of the box makes of the values near it: on the row, plane or column of index at along the
+/// axis,
+///   e[p + target] = near e[p + source] + next e[p + second].
+/// The source is beside the side; where the rule is not exact in single precision, the double sum differs.
+struct GhostRule {
+  int at = -1;  // none
+  Index target = 0, source = 0, second = 0;
+  Real near = 0, next = 0;
+
+  KOKKOS_INLINE_FUNCTION Real value(const float* e, Index p) const {
+    return near * Real{e[p + source]} + next * Real{e[p + second]};
+  }
+};
+
+/// Low and high side of each axis: the rules of fill_correction_ghosts.
+struct GhostRules {
+  GhostRule side[3][2];
+
+  GhostRules() = default;
+  /// c: velocity component.
+  GhostRules(const Layout& layout, const DomainSides& sides, int c);
+};
+
+/// Part of a stage that writes e: fills the ghosts that depend on a row.
+struct IterateGhosts {
+  Layout layout;
+  GhostRules rules;
+  float* e;
+
+  KOKKOS_INLINE_FUNCTION void apply(const GhostRule& rule, Index p) const {
+    e[p + rule.target] = static_cast<float>(rule.value(e, p));
+  }
+
+  void finish_row(int j, int k) const {
+    const Index row = layout(0, j, k);
+    for (const GhostRule& rule : rules.side[0])
+      if (rule.at >= 0) apply(rule, row + rule.at);
+    for (const GhostRule& rule : rules.side[1])
+      if (rule.at == j) apply_along(rule, row);
+    for (const GhostRule& rule : rules.side[2])
+      if (rule.at == k) apply_along(rule, row);
+  }
+
+  /// On a device: all sides after a kernel over all rows.
+  void finish() const;
+
+ private:
+  /// One cell more than the box has: on a high side there may be unknowns beyond.
+  void apply_along(const GhostRule& rule, Index row) const {
+    PECLET_INDEPENDENT_ITERATIONS
+    for (Index p = row; p <= row + layout.cells[0]; ++p) apply(rule, p);
+  }
+};
+
+/// Part of a stage after residual -= A e: ghosts that rounding kept from following their rule are put right.
+struct GhostRounding {
+  Layout layout;
+  GhostRules rules;
+  const float* e;
+  Real* residual;
+  Real3 along;  // weight of a ghost in A
+
+  KOKKOS_INLINE_FUNCTION void apply(int axis, const GhostRule& rule, Index p) const {
+    residual[p + rule.source] += along[axis] * (rule.value(e, p) - Real{e[p + rule.target]});
+  }
+
+  /// A rule is applied on the row of its source.
+  void finish_row(int j, int k) const;
+  void finish() const;
+};
+
+}  // namespace peclet::flow

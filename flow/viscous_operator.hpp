@@ -1,0 +1,72 @@
+#pragma once
+// The operator 1 - theta dt nu L of one velocity component, row by row: the regular formula on the grid, wall
+// rows beside it.
+#include "core/field.hpp"
+#include "core/sweep.hpp"
+#include "flow/domain_sides.hpp"
+#include "flow/iterate_ghosts.hpp"
+#include "flow/wall_rows.hpp"
+
+namespace peclet::flow {
+
+/// One component's linear system.
+struct ViscousSystem {
+  Grid grid;
+  DomainSides sides;
+  int component = 0;
+  Real diffusion = 0;               // theta dt nu
+  const SweepPlan* plan = nullptr;  // wraps along periodic axes
+  RowRanges rows;                   // beginning on whole vectors
+  Field<OpenFraction> open;         // 0: row of a solid point, left out of norms
+  WallRows fixed_rows, moving_rows;
+
+  Layout layout() const { return open.layout(); }
+};
+
+/// Coefficients of the regular formula.
+template <class T>
+struct Diffusion {
+  T x, y, z;  // theta dt nu / h^2
+  T diagonal;
+
+  explicit Diffusion(const ViscousSystem& system) {
+    T along[3];
+    for (int a = 0; a < 3; ++a)
+      along[a] = static_cast<T>(system.diffusion / (system.grid.spacing[a] * system.grid.spacing[a]));
+    x = along[0];
+    y = along[1];
+    z = along[2];
+    diagonal = 1 + 2 * (x + y + z);
+  }
+  KOKKOS_INLINE_FUNCTION T along(int axis) const { return axis == 0 ? x : (axis == 1 ? y : z); }
+};
+
+/// Row of a wall: sum of weighted fluid neighbours and diagonal.
+template <class T>
+struct WallRow {
+  T neighbors = 0, diagonal = 1;
+
+  KOKKOS_INLINE_FUNCTION WallRow(const WallRows& rows, Index row, const Field<float>& e,
+                                 const Diffusion<T>& diffusion) {
+    const Index p = rows.face(row);
+    for (int d = 0; d < WallRows::directions; ++d) {
+      const T coefficient = diffusion.along(d / 2) * static_cast<T>(rows.weight(row, d));
+      const Index step = e.layout().stride(d / 2);
+      diagonal += coefficient;
+      neighbors += rows.is_wall(row, d) ? T(0) : coefficient * static_cast<T>(e[d % 2 ? p + step : p - step]);
+    }
+  }
+};
+
+/// Part of a stage: the body at wall rows.
+template <class Body>
+AtEntries<Body> at_walls(const WallRows& rows, const Body& body) {
+  return {rows.chains, rows.count, body};
+}
+
+/// Part of a stage: the ghosts of e.
+inline OnRows<IterateGhosts> ghosts_of(const ViscousSystem& system, const Field<float>& e) {
+  return {{e.layout(), GhostRules(e.layout(), system.sides, system.component), e.data()}};
+}
+
+}  // namespace peclet::flow
