@@ -27,8 +27,10 @@ struct LoadAdder {
   }
 };
 
+/// may_meet: these walls can belong to a narrow gap between bodies that move against each other.
 void add_wall_tractions(int c, const MomentumTerms& terms, const SolidSampler& solid, const WallRows& rows,
-                        const Field<Real>& correction, const LoadAdder& adder, const ScatterSum& sums) {
+                        bool may_meet, const Field<Real>& correction, const LoadAdder& adder,
+                        const ScatterSum& sums) {
   const MomentumTerms t = terms;
   const SolidSampler sampler = solid;
   const WallRows w = rows;
@@ -45,7 +47,7 @@ void add_wall_tractions(int c, const MomentumTerms& terms, const SolidSampler& s
         const Vec3 x = t.grid.face_center(c, cell[0], cell[1], cell[2]);
         const Field<Real>& v = t.extrapolated[c];
         const Real here = v[p] + t.implicit_weight * e[p];
-        const NarrowGap gap = narrow_gap(sampler, c, cell[0], cell[1], cell[2]);
+        const NarrowGap gap = may_meet ? narrow_gap(sampler, c, cell[0], cell[1], cell[2]) : NarrowGap();
         for (int d = 0; d < WallRows::directions; ++d) {
           if (!w.is_wall(row, d)) continue;
           const int a = d / 2, owner = w.owner(row, d);
@@ -104,8 +106,8 @@ void LoadCollector::add_momentum(int c, const MomentumTerms& terms, const SolidS
                                  const WallRows& fixed_rows, const WallRows& moving_rows,
                                  const Field<Real>& correction) {
   const LoadAdder adder{sums_.bins(), solid.geometry, bodies_};
-  add_wall_tractions(c, terms, solid, fixed_rows, correction, adder, sums_);
-  add_wall_tractions(c, terms, solid, moving_rows, correction, adder, sums_);
+  add_wall_tractions(c, terms, solid, fixed_rows, false, correction, adder, sums_);
+  add_wall_tractions(c, terms, solid, moving_rows, true, correction, adder, sums_);
 }
 
 void LoadCollector::add_pressure(int c, const SolidSampler& solid, const WallRows& fixed_rows,
