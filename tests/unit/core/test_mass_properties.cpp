@@ -66,7 +66,7 @@ TEST(MassProperties, MatchClosedForms) {
     EXPECT_NEAR(body.volume / c.volume, 1, c.tolerance) << c.kind;
     for (int axis = 0; axis < 3; ++axis) {
       EXPECT_NEAR(body.inertia[axis][axis] / c.inertia[axis], 1, c.tolerance) << c.kind;
-      EXPECT_NEAR(body.center[axis], 0, 1e-12) << c.kind;
+      EXPECT_NEAR(body.center[axis], 0, 1e-11) << c.kind;  // rounding of a sum over many cells
     }
   }
 }

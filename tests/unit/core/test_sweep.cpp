@@ -90,7 +90,7 @@ TEST(Sweep, ASeriesIsItsStagesOneAfterTheOther) {
           stage(odd, even));
       Real expected = plain(n, in, c);
       for (int m = 0; m <= repetitions; ++m) expected = m % 2 ? plain(n, d, c) : plain(n, c, d);
-      EXPECT_EQ(total.sum, expected);
+      EXPECT_NEAR(total.sum / expected, 1, 1e-12);  // too large to be exact
     }
 }
 
