@@ -37,7 +37,8 @@ struct SideGhosts {
   int c, axis, width;
   bool is_correction;  // homogeneous: prescribed values are 0
   DomainSide side[2];
-  Field<Real> normal;  // velocity along axis; only read where a side is an Outflow
+  Field<Real> normal;  // velocity along axis; only read to stop backflow
+  bool stops_backflow;
 
   /// Prescribed component c at the place of a tangential or normal point.
   KOKKOS_INLINE_FUNCTION Real prescribed(const DomainSide& at, const int (&cell)[3]) const {
@@ -54,7 +55,7 @@ struct SideGhosts {
                                           Index inward) const {
     if (at.kind == SideKind::Outflow) {
       const T edge = q[first];
-      const bool flows_back = !is_correction && (high ? edge < 0 : edge > 0);
+      const bool flows_back = stops_backflow && (high ? edge < 0 : edge > 0);
       const int layers = high ? 1 : width;  // beyond the unknown point on the side
       for (int d = 1; d <= layers; ++d) q[first - d * inward] = flows_back ? -edge : edge;
       return;
@@ -77,7 +78,7 @@ struct SideGhosts {
       far = 3 * near - 2 * wall;  // upwind extrapolation to the side then gives the prescribed value
     } else if (at.kind == SideKind::Slip) {
       far = q.layout().cells[axis] > 1 ? q[first + inward] : inner;
-    } else if (!is_correction) {
+    } else if (stops_backflow) {
       const Real out = normal[high ? ghost : first];
       if (high ? out < 0 : out > 0) near = far = 0;
     }
@@ -102,7 +103,7 @@ struct SideGhosts {
 
 template <class T>
 void fill_component_ghosts(const Field<T>& field, int c, const DomainSides& sides, bool is_correction,
-                           const Field<Real>* velocity, int width) {
+                           const Field<Real>* velocity, bool stops_backflow, int width) {
   for (int axis = 0; axis < 3; ++axis) {
     Box layers = side_layers(field.layout().cells, axis, width);
     // unknown points on the high side along c have neighbours beyond the other sides
@@ -112,8 +113,8 @@ void fill_component_ghosts(const Field<T>& field, int c, const DomainSides& side
       continue;
     }
     layers.high[axis] = 1;
-    SideGhosts<T> ghosts{field, c, axis, width, is_correction, {sides.side[axis][0], sides.side[axis][1]},
-                         {}};
+    SideGhosts<T> ghosts{
+        field, c, axis, width, is_correction, {sides.side[axis][0], sides.side[axis][1]}, {}, stops_backflow};
     if (velocity) ghosts.normal = velocity[axis];
     for_each_cell("flow::fill_side_ghosts", layers, KOKKOS_LAMBDA(int i, int j, int k) { ghosts(i, j, k); });
   }
@@ -237,9 +238,10 @@ void fill_pressure_ghosts(const Field<Real>& pressure, const DomainSides& sides)
   }
 }
 
-void fill_velocity_ghosts(const FaceVector<Real>& velocity, int c, const DomainSides& sides, int width) {
+void fill_velocity_ghosts(const FaceVector<Real>& velocity, int c, const DomainSides& sides, int width,
+                          bool stops_backflow) {
   const Field<Real> components[3] = {velocity.x, velocity.y, velocity.z};
-  fill_component_ghosts(velocity[c], c, sides, false, components, width);
+  fill_component_ghosts(velocity[c], c, sides, false, components, stops_backflow, width);
 }
 
 void fill_outflow_points(const FaceVector<Real>& velocity, const DomainSides& sides) {
@@ -258,7 +260,7 @@ void fill_outflow_points(const FaceVector<Real>& velocity, const DomainSides& si
 
 template <class T>
 void fill_correction_ghosts(const Field<T>& correction, int c, const DomainSides& sides, int width) {
-  fill_component_ghosts<T>(correction, c, sides, true, nullptr, width);
+  fill_component_ghosts<T>(correction, c, sides, true, nullptr, false, width);
 }
 
 template void fill_correction_ghosts(const Field<float>&, int, const DomainSides&, int);

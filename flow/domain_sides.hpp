@@ -68,9 +68,10 @@ void fill_pressure_ghosts(const Field<Real>& pressure, const DomainSides& sides)
 
 /// Prescribed points of the sides, and ghosts of velocity component c. Tangential values follow the parabola
 /// through the side and two points: exact for quadratic profiles. Component order does not matter, but the
-/// ghosts of the tangential components read the normal one at Outflow sides: fill that first.
+/// ghosts of the tangential components read the normal one at Outflow sides: fill that first. stops_backflow:
+/// what flows back through an Outflow side brings no momentum.
 void fill_velocity_ghosts(const FaceVector<Real>& velocity, int c, const DomainSides& sides,
-                          int width = Layout::ghost_width);
+                          int width = Layout::ghost_width, bool stops_backflow = false);
 
 /// Points on high Outflow sides := the points beside them.
 void fill_outflow_points(const FaceVector<Real>& velocity, const DomainSides& sides);

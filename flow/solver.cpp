@@ -78,7 +78,11 @@ void Solver::step() {
   for (int c = 0; c < 3; ++c) impose_body_velocity(boundary_.body_faces(c), extrapolated_[c]);
   courant_number_bound_ =
       velocity_scale * terms.time_step * (1 / grid_.spacing[0] + 1 / grid_.spacing[1] + 1 / grid_.spacing[2]);
-  fill_velocity(extrapolated_, 2);
+  // viscosity that reaches further than a cell in a step keeps backflow in check by itself
+  const Real cell = smallest_spacing(grid_);
+  const bool stops_backflow =
+      terms.scheme != AdvectionScheme::None && terms.kinematic_viscosity * terms.time_step < cell * cell;
+  fill_velocity(extrapolated_, 2, stops_backflow);
   fill_pressure_ghosts(pressure_, sides_);
 
   return_advective_leak(terms);

@@ -127,7 +127,7 @@ class Solver {
   void impose_body_motion();
   void take_requested_sides();
   void require_balanced_inflow(Real velocity_scale) const;
-  void fill_velocity(const FaceVector<Real>& velocity, int width) const;
+  void fill_velocity(const FaceVector<Real>& velocity, int width, bool stops_backflow = false) const;
   void take_requested_poses();
   void promote_moved_bodies();
   void geometry_rebuilt();

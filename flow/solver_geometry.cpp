@@ -77,8 +77,8 @@ void Solver::impose_body_motion() {
   }
 }
 
-void Solver::fill_velocity(const FaceVector<Real>& velocity, int width) const {
-  for (int c = 0; c < 3; ++c) fill_velocity_ghosts(velocity, c, sides_, width);
+void Solver::fill_velocity(const FaceVector<Real>& velocity, int width, bool stops_backflow) const {
+  for (int c = 0; c < 3; ++c) fill_velocity_ghosts(velocity, c, sides_, width, stops_backflow);
 }
 
 void Solver::set_side(int axis, int high, const DomainSide& side) {

@@ -292,3 +292,20 @@ def test_a_large_courant_number_warns():
     solver.set_dt(5.0)
     with pytest.warns(RuntimeWarning, match="Courant"):
         solver.step()
+
+
+@pytest.mark.parametrize("dt", [1.0, 100.0])
+@pytest.mark.parametrize("kind", ["slip", "wall"])
+def test_creeping_flow_through_an_outflow_decays_at_any_time_step(kind, dt):
+    # diffusion number nu dt / h^2 = dt; velocities of random sign flow in and out
+    solver = flow.Solver((8, 8, 8), extent=(8, 8, 8))
+    solver.set_mu(1.0)
+    solver.set_dt(dt)
+    for face in ("-x", "+x", "-y", "+y"):
+        solver.set_domain_bc(face, kind)
+    solver.set_domain_bc("-z", "wall")
+    solver.set_domain_bc("+z", "outflow")
+    solver.set_state(*np.random.default_rng(1).standard_normal((3, 8, 8, 8)))
+    for _ in range(30):
+        solver.step()
+    assert solver.max_velocity() < 0.05

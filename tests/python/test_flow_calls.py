@@ -321,10 +321,14 @@ def test_control_c_stops_between_steps():
     solver = small_solver()
     main = threading.get_ident()
     timer = threading.Timer(0.3, lambda: signal.pthread_kill(main, signal.SIGINT))
-    timer.start()
-    with pytest.raises(KeyboardInterrupt):
-        step_for_long(solver)
-    timer.join()
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored in background jobs
+    try:
+        timer.start()
+        with pytest.raises(KeyboardInterrupt):
+            step_for_long(solver)
+        timer.join()
+    finally:
+        signal.signal(signal.SIGINT, before)
     steps = solver.number_of_steps
     solver.step()
     assert solver.number_of_steps == steps + 1
