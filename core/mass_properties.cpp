@@ -129,7 +129,7 @@ Moments integrate_cells(const SolidQuadrature& quadrature, Vec3 low, Vec3 high, 
   const Vec3 h = (high - low) / cells;
   const Index columns = static_cast<Index>(cells) * cells;
   const Array<Moments> partial("core::mass_properties", columns);
-  for_each(
+  for_each_task(
       "core::mass_properties", columns, KOKKOS_LAMBDA(Index column) {
         const auto j = static_cast<Real>(column % cells), k = static_cast<Real>(column / cells);
         Moments sum;

@@ -60,7 +60,7 @@ template <class Body>
 void for_each_scattered(const std::string& label, Index count, const ScatterSum& sum, const Body& body) {
   if constexpr (runs_on_host) {
     const Index chunks = sum.chunks();
-    for_each(label, chunks, [=](Index chunk) {
+    for_each_task(label, chunks, [=](Index chunk) {
       const Index end = (chunk + 1) * count / chunks;
       for (Index n = chunk * count / chunks; n < end; ++n) body(n, static_cast<int>(chunk));
     });
