@@ -270,6 +270,11 @@ Index enumerate(const std::string& label, Index count, const Array<Index>& posit
   return total;
 }
 
+/// Whether enumerate() kept entry n, total being what it returned.
+KOKKOS_INLINE_FUNCTION bool is_kept(const Array<Index>& positions, Index n, Index count, Index total) {
+  return (n + 1 < count ? positions(n + 1) : total) > positions(n);
+}
+
 /// Largest of body(n) over 0 <= n < count, at least zero; the same for any number of threads.
 template <class Body>
 Real max_each(const std::string& label, Index count, const Body& body) {

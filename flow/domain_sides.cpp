@@ -1,22 +1,11 @@
 #include "flow/domain_sides.hpp"
 
+#include <vector>
+
 #include "core/error.hpp"
 
 namespace peclet::flow {
 namespace {
-
-/// The layers on both sides of one axis, with the ghosts that the axes before it have filled: depth counts
-/// the layers from each side, 0 being the one next to it.
-Box side_layers(const Int3& cells, int axis, int width) {
-  Box layers{{-width, -width, -width}, cells};
-  for (int a = 0; a < 3; ++a) {
-    if (a < axis) layers.high[a] += width;
-    if (a > axis) layers.low[a] = 0;
-  }
-  layers.low[axis] = 0;
-  layers.high[axis] = width;
-  return layers;
-}
 
 /// Faces of one side: index 0 along the axis.
 Box side_faces(const Int3& cells, int axis) {
@@ -31,9 +20,8 @@ KOKKOS_INLINE_FUNCTION int other_axis(int axis, int which) {
 }
 
 /// One velocity component beyond both sides of one axis.
-template <class T>
 struct SideGhosts {
-  Field<T> q;
+  Field<Real> q;
   int c, axis, width;
   bool is_correction;  // homogeneous: prescribed values are 0
   DomainSide side[2];
@@ -54,13 +42,13 @@ struct SideGhosts {
   KOKKOS_INLINE_FUNCTION void fill_normal(const DomainSide& at, int high, const int (&cell)[3], Index first,
                                           Index inward) const {
     if (at.kind == SideKind::Outflow) {
-      const T edge = q[first];
+      const Real edge = q[first];
       const bool flows_back = stops_backflow && (high ? edge < 0 : edge > 0);
       const int layers = high ? 1 : width;  // beyond the unknown point on the side
       for (int d = 1; d <= layers; ++d) q[first - d * inward] = flows_back ? -edge : edge;
       return;
     }
-    const T edge = at.prescribes_velocity() ? static_cast<T>(prescribed(at, cell)) : T(0);
+    const Real edge = at.prescribes_velocity() ? prescribed(at, cell) : 0.0;
     q[first] = edge;
     for (int d = 1; d <= width - high; ++d) q[first - d * inward] = 2 * edge - q[first + d * inward];
   }
@@ -69,11 +57,11 @@ struct SideGhosts {
   KOKKOS_INLINE_FUNCTION void fill_tangential(const DomainSide& at, int high, const int (&cell)[3],
                                               Index first, Index inward) const {
     const Index ghost = first - inward, second = ghost - inward;
-    const T inner = q[first];
-    T near = inner, far = inner;
+    const Real inner = q[first];
+    Real near = inner, far = inner;
     if (at.prescribes_velocity()) {
-      const T wall = static_cast<T>(prescribed(at, cell));
-      const T next = q.layout().cells[axis] > 1 ? q[first + inward] : 2 * inner - wall;
+      const Real wall = prescribed(at, cell);
+      const Real next = q.layout().cells[axis] > 1 ? q[first + inward] : 2 * inner - wall;
       near = (8 * wall - 6 * inner + next) / 3;
       far = 3 * near - 2 * wall;  // upwind extrapolation to the side then gives the prescribed value
     } else if (at.kind == SideKind::Slip) {
@@ -101,11 +89,10 @@ struct SideGhosts {
   }
 };
 
-template <class T>
-void fill_component_ghosts(const Field<T>& field, int c, const DomainSides& sides, bool is_correction,
+void fill_component_ghosts(const Field<Real>& field, int c, const DomainSides& sides, bool is_correction,
                            const Field<Real>* velocity, bool stops_backflow, int width) {
   for (int axis = 0; axis < 3; ++axis) {
-    Box layers = side_layers(field.layout().cells, axis, width);
+    Box layers = ghost_layers(field.layout().cells, axis, width);
     // unknown points on the high side along c have neighbours beyond the other sides
     if (axis < c && sides.side[c][1].kind == SideKind::Outflow) ++layers.high[c];
     if (sides.is_periodic(axis)) {
@@ -113,37 +100,38 @@ void fill_component_ghosts(const Field<T>& field, int c, const DomainSides& side
       continue;
     }
     layers.high[axis] = 1;
-    SideGhosts<T> ghosts{
+    SideGhosts ghosts{
         field, c, axis, width, is_correction, {sides.side[axis][0], sides.side[axis][1]}, {}, stops_backflow};
     if (velocity) ghosts.normal = velocity[axis];
     for_each_cell("flow::fill_side_ghosts", layers, KOKKOS_LAMBDA(int i, int j, int k) { ghosts(i, j, k); });
   }
 }
 
-/// sign * the mirror image about the side, for values at cell centres.
-template <class T>
-void fill_reflected_layers(const Field<T>& field, int axis, const Box& layers, T low_sign, T high_sign) {
-  const int n = field.layout().cells[axis];
-  const Index step = field.layout().stride(axis);
-  for_each_cell(
-      "flow::fill_reflected_ghosts", layers, KOKKOS_LAMBDA(int i, int j, int k) {
-        const int depth = axis == 0 ? i : (axis == 1 ? j : k);
-        const Index first = field.layout()(i, j, k) - depth * step;
-        const int inside = depth < n ? depth : n - 1;
-        field[first - (1 + depth) * step] = static_cast<T>(low_sign * field[first + inside * step]);
-        field[first + (n + depth) * step] =
-            static_cast<T>(high_sign * field[first + (n - 1 - inside) * step]);
-      });
-}
-
-/// Whether the face (s, t) of a side is beside fluid.
-struct SideFluid {
+/// The faces of one side and the cells behind them.
+struct SideFaces {
+  DomainSide side;
   Field<Real> sdf;
   int axis, high;
+
   KOKKOS_INLINE_FUNCTION Index cell(int i, int j, int k) const {
     return sdf.layout()(i, j, k) + (high ? (sdf.layout().cells[axis] - 1) * sdf.layout().stride(axis) : 0);
   }
+  /// Prescribed velocity along axis; 0 where the cell behind is solid.
+  KOKKOS_INLINE_FUNCTION Real normal_velocity(int i, int j, int k) const {
+    const int at[3] = {i, j, k};
+    return sdf[cell(i, j, k)] < 0 ? 0.0
+                                  : side.velocity_at(axis, at[other_axis(axis, 0)], at[other_axis(axis, 1)]);
+  }
 };
+
+std::vector<SideFaces> inflow_faces(const DomainSides& sides, const Field<Real>& sdf) {
+  std::vector<SideFaces> faces;
+  for (int axis = 0; axis < 3; ++axis)
+    for (int high = 0; high < 2; ++high)
+      if (sides.side[axis][high].kind == SideKind::Inflow)
+        faces.push_back({sides.side[axis][high], sdf, axis, high});
+  return faces;
+}
 
 }  // namespace
 
@@ -214,7 +202,7 @@ RowRanges velocity_rows(const RowRanges& cells, const DomainSides& sides, const 
 template <class T>
 void fill_mirrored_ghosts(const Field<T>& field, const DomainSides& sides, int width) {
   for (int axis = 0; axis < 3; ++axis) {
-    const Box layers = side_layers(field.layout().cells, axis, width);
+    const Box layers = ghost_layers(field.layout().cells, axis, width);
     if (sides.is_periodic(axis))
       fill_periodic_layers(field, axis, layers);
     else
@@ -224,19 +212,6 @@ void fill_mirrored_ghosts(const Field<T>& field, const DomainSides& sides, int w
 
 template void fill_mirrored_ghosts(const Field<Real>&, const DomainSides&, int);
 template void fill_mirrored_ghosts(const Field<int>&, const DomainSides&, int);
-
-void fill_pressure_ghosts(const Field<Real>& pressure, const DomainSides& sides) {
-  for (int axis = 0; axis < 3; ++axis) {
-    const Box layers = side_layers(pressure.layout().cells, axis, 1);
-    if (sides.is_periodic(axis)) {
-      fill_periodic_layers(pressure, axis, layers);
-      continue;
-    }
-    const Real low = sides.side[axis][0].kind == SideKind::Outflow ? -1 : 1;
-    const Real high = sides.side[axis][1].kind == SideKind::Outflow ? -1 : 1;
-    fill_reflected_layers(pressure, axis, layers, low, high);
-  }
-}
 
 void fill_velocity_ghosts(const FaceVector<Real>& velocity, int c, const DomainSides& sides, int width,
                           bool stops_backflow) {
@@ -258,13 +233,9 @@ void fill_outflow_points(const FaceVector<Real>& velocity, const DomainSides& si
   }
 }
 
-template <class T>
-void fill_correction_ghosts(const Field<T>& correction, int c, const DomainSides& sides, int width) {
-  fill_component_ghosts<T>(correction, c, sides, true, nullptr, false, width);
+void fill_correction_ghosts(const Field<Real>& correction, int c, const DomainSides& sides, int width) {
+  fill_component_ghosts(correction, c, sides, true, nullptr, false, width);
 }
-
-template void fill_correction_ghosts(const Field<float>&, int, const DomainSides&, int);
-template void fill_correction_ghosts(const Field<Real>&, int, const DomainSides&, int);
 
 void fill_open_ghosts(const FaceVector<OpenFraction>& open, const Field<Real>& sdf,
                       const DomainSides& sides) {
@@ -272,7 +243,7 @@ void fill_open_ghosts(const FaceVector<OpenFraction>& open, const Field<Real>& s
   for (int c = 0; c < 3; ++c) {
     const Field<OpenFraction> fraction = open[c];
     for (int axis = 0; axis < 3; ++axis) {
-      const Box layers = side_layers(cells, axis, Layout::ghost_width);
+      const Box layers = ghost_layers(cells, axis, Layout::ghost_width);
       if (sides.is_periodic(axis)) {
         fill_periodic_layers(fraction, axis, layers);
         continue;
@@ -281,9 +252,8 @@ void fill_open_ghosts(const FaceVector<OpenFraction>& open, const Field<Real>& s
         fill_reflected_layers(fraction, axis, layers, OpenFraction(1), OpenFraction(1));
         continue;
       }
-      const bool is_open[2] = {sides.side[axis][0].kind == SideKind::Outflow,
-                               sides.side[axis][1].kind == SideKind::Outflow};
-      const bool low_open = is_open[0], high_open = is_open[1];
+      const bool low_open = sides.side[axis][0].kind == SideKind::Outflow;
+      const bool high_open = sides.side[axis][1].kind == SideKind::Outflow;
       const int n = cells[axis];
       const Index step = sdf.layout().stride(axis);
       Box faces = layers;
@@ -304,46 +274,33 @@ void fill_open_ghosts(const FaceVector<OpenFraction>& open, const Field<Real>& s
 
 Real add_side_flux(const Grid& grid, const DomainSides& sides, const Field<Real>& sdf,
                    const Field<Real>& divergence) {
+  const Field<Real> result = divergence;
   Real largest = 0;
-  for (int axis = 0; axis < 3; ++axis)
-    for (int high = 0; high < 2; ++high) {
-      const DomainSide side = sides.side[axis][high];
-      if (side.kind != SideKind::Inflow) continue;
-      const SideFluid beside{sdf, axis, high};
-      const Real scale = (high ? 1 : -1) / grid.spacing[axis];
-      const Box faces = side_faces(grid.cells, axis);
-      const Field<Real> result = divergence;
-      const int s_axis = other_axis(axis, 0), t_axis = other_axis(axis, 1);
-      const Real at_side = max_cells(
-          "flow::add_side_flux", RowRanges(faces), KOKKOS_LAMBDA(int i, int j, int k) {
-            const int at[3] = {i, j, k};
-            const Index cell = beside.cell(i, j, k);
-            if (beside.sdf[cell] < 0) return 0.0;
-            result[cell] += scale * side.velocity_at(axis, at[s_axis], at[t_axis]);
-            return Kokkos::abs(result[cell]);
-          });
-      largest = at_side > largest ? at_side : largest;
-    }
+  for (const SideFaces& inflow : inflow_faces(sides, sdf)) {
+    const SideFaces faces = inflow;
+    const Real scale = (faces.high ? 1 : -1) / grid.spacing[faces.axis];
+    const Real at_side = max_cells(
+        "flow::add_side_flux", RowRanges(side_faces(grid.cells, faces.axis)),
+        KOKKOS_LAMBDA(int i, int j, int k) {
+          const Index cell = faces.cell(i, j, k);
+          if (faces.sdf[cell] < 0) return 0.0;
+          result[cell] += scale * faces.normal_velocity(i, j, k);
+          return Kokkos::abs(result[cell]);
+        });
+    largest = at_side > largest ? at_side : largest;
+  }
   return largest;
 }
 
 Real net_inflow(const Grid& grid, const DomainSides& sides, const Field<Real>& sdf) {
   Real total = 0;
-  for (int axis = 0; axis < 3; ++axis)
-    for (int high = 0; high < 2; ++high) {
-      const DomainSide side = sides.side[axis][high];
-      if (side.kind != SideKind::Inflow) continue;
-      const SideFluid beside{sdf, axis, high};
-      const int s_axis = other_axis(axis, 0), t_axis = other_axis(axis, 1);
-      const Real area = (high ? -1 : 1) * grid.cell_volume() / grid.spacing[axis];
-      total += area * sum_cells(
-                          "flow::net_inflow", RowRanges(side_faces(grid.cells, axis)),
-                          KOKKOS_LAMBDA(int i, int j, int k) {
-                            const int at[3] = {i, j, k};
-                            const bool fluid = beside.sdf[beside.cell(i, j, k)] >= 0;
-                            return fluid ? side.velocity_at(axis, at[s_axis], at[t_axis]) : 0.0;
-                          });
-    }
+  for (const SideFaces& inflow : inflow_faces(sides, sdf)) {
+    const SideFaces faces = inflow;
+    const Real area = (faces.high ? -1 : 1) * grid.cell_volume() / grid.spacing[faces.axis];
+    total += area * sum_cells(
+                        "flow::net_inflow", RowRanges(side_faces(grid.cells, faces.axis)),
+                        KOKKOS_LAMBDA(int i, int j, int k) { return faces.normal_velocity(i, j, k); });
+  }
   return total;
 }
 

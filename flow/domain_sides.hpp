@@ -63,9 +63,6 @@ RowRanges velocity_rows(const RowRanges& cells, const DomainSides& sides, const 
 template <class T>
 void fill_mirrored_ghosts(const Field<T>& field, const DomainSides& sides, int width = Layout::ghost_width);
 
-/// Ghosts of the pressure: periodic copies, mirrored, antisymmetric beyond an Outflow.
-void fill_pressure_ghosts(const Field<Real>& pressure, const DomainSides& sides);
-
 /// Prescribed points of the sides, and ghosts of velocity component c. Tangential values follow the parabola
 /// through the side and two points: exact for quadratic profiles. Component order does not matter, but the
 /// ghosts of the tangential components read the normal one at Outflow sides: fill that first. stops_backflow:
@@ -77,8 +74,7 @@ void fill_velocity_ghosts(const FaceVector<Real>& velocity, int c, const DomainS
 void fill_outflow_points(const FaceVector<Real>& velocity, const DomainSides& sides);
 
 /// fill_velocity_ghosts for a change of the velocity: zero on prescribed points, homogeneous ghosts.
-template <class T>
-void fill_correction_ghosts(const Field<T>& correction, int c, const DomainSides& sides, int width = 1);
+void fill_correction_ghosts(const Field<Real>& correction, int c, const DomainSides& sides, int width = 1);
 
 /// open: faces on sides that the pressure does not see become 0, those on Outflow sides fully open unless the
 /// cell behind is solid; beyond, mirrored.

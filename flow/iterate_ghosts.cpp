@@ -19,16 +19,21 @@ GhostRule tangential_rule(const DomainSide& side, int high, int n, Index step) {
   return {1, -2 * step, -step, 0, -2, 1.0 / 3};
 }
 
-void apply_on_side(const IterateGhosts& ghosts, int axis, const GhostRule& rule) {
-  if (rule.at < 0) return;
-  Box cells{{0, 0, 0}, ghosts.layout.cells};
+/// Where a rule is applied; one cell more along the other axes, as there may be unknowns on a high side.
+Box places_of(const GhostRule& rule, const Layout& layout, int axis) {
+  Box cells{{0, 0, 0}, layout.cells};
   for (int a = 0; a < 3; ++a) ++cells.high[a];
   cells.low[axis] = rule.at;
   cells.high[axis] = rule.at + 1;
+  return cells;
+}
+
+void apply_on_side(const IterateGhosts& ghosts, int axis, const GhostRule& rule) {
+  if (rule.at < 0) return;
   const IterateGhosts target = ghosts;
   const GhostRule applied = rule;
   for_each_cell(
-      "flow::iterate_ghosts", cells,
+      "flow::iterate_ghosts", places_of(rule, ghosts.layout, axis),
       KOKKOS_LAMBDA(int i, int j, int k) { target.apply(applied, target.layout(i, j, k)); });
 }
 
@@ -39,14 +44,10 @@ int source_index(const GhostRule& rule, Index step) { return rule.at + static_ca
 
 void put_right_on_side(const GhostRounding& rounding, int axis, const GhostRule& rule) {
   if (is_exact(rule)) return;
-  Box cells{{0, 0, 0}, rounding.layout.cells};
-  for (int a = 0; a < 3; ++a) ++cells.high[a];
-  cells.low[axis] = rule.at;
-  cells.high[axis] = rule.at + 1;
   const GhostRounding target = rounding;
   const GhostRule applied = rule;
   for_each_cell(
-      "flow::ghost_rounding", cells,
+      "flow::ghost_rounding", places_of(rule, rounding.layout, axis),
       KOKKOS_LAMBDA(int i, int j, int k) { target.apply(axis, applied, target.layout(i, j, k)); });
 }
 

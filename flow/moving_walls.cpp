@@ -73,8 +73,8 @@ void build_body_faces(int c, const SolidSampler& solid, const FaceVector<OpenFra
   const SolidSampler sampler = solid;
   for_each(
       "flow::build_body_faces", total, KOKKOS_LAMBDA(Index n) {
+        if (!is_kept(scratch, n, total, kept)) return;
         const Index row = scratch(n);
-        if ((n + 1 < total ? scratch(n + 1) : kept) == row) return;
         const RegionCell cell = region.cell(n);
         const Index p = layout(cell.i, cell.j, cell.k);
         target.face(row) = p;
@@ -98,8 +98,8 @@ void build_cut_cells(const FaceVector<OpenFraction>& open, const RegionList& reg
   const CutCells target = cells;
   for_each(
       "flow::build_cut_cells", total, KOKKOS_LAMBDA(Index n) {
+        if (!is_kept(scratch, n, total, kept)) return;
         const Index row = scratch(n);
-        if ((n + 1 < total ? scratch(n + 1) : kept) == row) return;
         const RegionCell cell = region.cell(n);
         target.cell(row) = layout(cell.i, cell.j, cell.k);
       });

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/error.hpp"
+#include "core/halo.hpp"
 #include "flow/conjugate_gradient.hpp"
 #include "flow/fluid_regions.hpp"
 
@@ -21,33 +22,20 @@ void require_settings(const PressureSettings& settings) {
   require(settings.max_iterations >= 0, "max_iterations", "a non-negative number", settings.max_iterations);
 }
 
-/// Ghost layers of phi beyond one axis; along the axes before it the ghosts are already there.
-void fill_ghosts(const Field<Real>& phi, const PressureSides& sides, int axis) {
-  constexpr int width = Layout::ghost_width;
-  const int n = phi.layout().cells[axis];
-  Box layers{{-width, -width, -width}, phi.layout().cells};
-  for (int a = 0; a < 3; ++a) {
-    if (a < axis) layers.high[a] += width;
-    if (a > axis) layers.low[a] = 0;
-  }
-  layers.low[axis] = 0;
-  layers.high[axis] = width;
-  const Index step = phi.layout().stride(axis);
-  for_each_cell(
-      "flow::pressure_ghosts", layers, KOKKOS_LAMBDA(int i, int j, int k) {
-        const int depth = axis == 0 ? i : (axis == 1 ? j : k);
-        const Index first = phi.layout()(i, j, k) - depth * step;
-        for (int high = 0; high < 2; ++high) {
-          const PressureSide side = sides.side[axis][high];
-          const int across = side == PressureSide::Periodic ? n - 1 - depth % n : (depth < n ? depth : n - 1);
-          const Index ghost = first + (high ? n + depth : -1 - depth) * step;
-          const Real value = phi[first + (high ? n - 1 - across : across) * step];
-          phi[ghost] = side == PressureSide::Fixed ? -value : value;
-        }
-      });
-}
-
 }  // namespace
+
+void fill_pressure_ghosts(const Field<Real>& pressure, const PressureSides& sides, int width) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const Box layers = ghost_layers(pressure.layout().cells, axis, width);
+    if (sides.is_periodic(axis)) {
+      fill_periodic_layers(pressure, axis, layers);
+      continue;
+    }
+    const Real low = sides.side[axis][0] == PressureSide::Fixed ? -1 : 1;
+    const Real high = sides.side[axis][1] == PressureSide::Fixed ? -1 : 1;
+    fill_reflected_layers(pressure, axis, layers, low, high);
+  }
+}
 
 struct PressureSolver::Parts {
   Grid grid;
@@ -133,7 +121,7 @@ SolveReport PressureSolver::solve(const Field<Real>& rhs, const Field<Real>& phi
   }
   const Real norm = std::sqrt(norms.squares);
   report = conjugate_gradient(equation, multigrid, parts_->search, norm, std::sqrt(cells) / norm, settings);
-  for (int axis = 0; axis < 3; ++axis) fill_ghosts(phi, parts_->sides, axis);
+  fill_pressure_ghosts(phi, parts_->sides);
   return report;
 }
 

@@ -26,6 +26,11 @@ struct SolveReport {
   bool converged = false;
 };
 
+/// Ghosts of a value at cell centres: periodic copies, mirrored on Closed sides, antisymmetric on Fixed
+/// sides.
+void fill_pressure_ghosts(const Field<Real>& pressure, const PressureSides& sides,
+                          int width = Layout::ghost_width);
+
 /// Solves  sum over the faces of a cell of  o (phi_neighbour - phi) / h_a^2 = rhs  in every cell with an open
 /// face, o being the open fraction of the face and h_a the spacing normal to it.
 class PressureSolver {

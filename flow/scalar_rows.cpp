@@ -153,10 +153,6 @@ KOKKOS_INLINE_FUNCTION void cell_indices(const Int3& n, Index place, int (&cell)
   cell[2] = static_cast<int>(place / n[0] / n[1]);
 }
 
-KOKKOS_INLINE_FUNCTION bool is_kept(const Array<Index>& scratch, Index n, Index total, Index kept) {
-  return (n + 1 < total ? scratch(n + 1) : kept) > scratch(n);
-}
-
 KOKKOS_INLINE_FUNCTION bool any_open(const FaceVector<OpenFraction>& open, Index p) {
   bool any = false;
   for (int a = 0; a < 3; ++a) any = any || open[a][p] || open[a][p + open.x.layout().stride(a)];

@@ -21,10 +21,6 @@ constexpr Real divergence_limit = 3e-9;
 /// Residual of the pressure that balances the body force at the start.
 constexpr Real rest_tolerance = 1e-12;
 
-Real smallest_spacing(const Grid& grid) {
-  return std::min({grid.spacing[0], grid.spacing[1], grid.spacing[2]});
-}
-
 }  // namespace
 
 Solver::Solver(const Grid& grid)
@@ -63,8 +59,7 @@ MomentumTerms Solver::momentum_terms() const {
 }
 
 void Solver::step() {
-  take_requested_sides();
-  if (geometry_stale_ || !built_) update_geometry();
+  bring_geometry_up_to_date();
   if (wall_velocity_stale_) refresh_wall_velocity();
   const double geometry_time = times_.geometry;
   times_ = {};
@@ -79,11 +74,11 @@ void Solver::step() {
   courant_number_bound_ =
       velocity_scale * terms.time_step * (1 / grid_.spacing[0] + 1 / grid_.spacing[1] + 1 / grid_.spacing[2]);
   // viscosity that reaches further than a cell in a step keeps backflow in check by itself
-  const Real cell = smallest_spacing(grid_);
+  const Real cell = grid_.smallest_spacing();
   const bool stops_backflow =
       terms.scheme != AdvectionScheme::None && terms.kinematic_viscosity * terms.time_step < cell * cell;
   fill_velocity(extrapolated_, 2, stops_backflow);
-  fill_pressure_ghosts(pressure_, sides_);
+  fill_pressure_ghosts(pressure_, sides_.pressure_sides(), 1);
 
   return_advective_leak(terms);
 
@@ -175,7 +170,7 @@ void Solver::project_velocity(Real velocity_scale, Real implicit_weight) {
                          boundary_.solid().sdf, velocity_, divergence_);
   {
     const Stopwatch watch(times_.pressure);
-    const Real scale = std::max(velocity_scale / smallest_spacing(grid_), largest);
+    const Real scale = std::max(velocity_scale / grid_.smallest_spacing(), largest);
     PressureSettings limits;
     limits.max_iterations = settings_.pressure_iteration_limit;
     limits.relative_tolerance = settings_.pressure_tolerance;
@@ -190,8 +185,8 @@ void Solver::project_velocity(Real velocity_scale, Real implicit_weight) {
   const ProjectionUpdate update{settings_.density / settings_.time_step,
                                 implicit_weight * settings_.viscosity, potential_, divergence_};
   apply_projection(grid_, plan_, boundary_.rows(), boundary_.open(), sides_, update, velocity_, pressure_);
-  fill_pressure_ghosts(pressure_, sides_);
-  fill_pressure_ghosts(divergence_, sides_);
+  fill_pressure_ghosts(pressure_, sides_.pressure_sides(), 1);
+  fill_pressure_ghosts(divergence_, sides_.pressure_sides(), 1);
   {
     const Stopwatch watch(times_.loads);
     std::vector<Vec3> spin_resistance(static_cast<std::size_t>(bodies_.count()));
@@ -214,8 +209,7 @@ const std::vector<BodyLoad>& Solver::loads() const {
 }
 
 Real Solver::largest_open_divergence() {
-  take_requested_sides();
-  if (geometry_stale_ || !built_) update_geometry();
+  bring_geometry_up_to_date();
   fill_velocity(velocity_, 1);
   compute_divergence(grid_, plan_, boundary_.rows(), boundary_.open(), boundary_.cut_cells(), sides_,
                      boundary_.solid().sdf, velocity_, divergence_);

@@ -126,6 +126,7 @@ class Solver {
   void project_velocity(Real velocity_scale, Real implicit_weight);
   void impose_body_motion();
   void take_requested_sides();
+  void bring_geometry_up_to_date();
   void require_balanced_inflow(Real velocity_scale) const;
   void fill_velocity(const FaceVector<Real>& velocity, int width, bool stops_backflow = false) const;
   void take_requested_poses();

@@ -191,6 +191,11 @@ void Solver::update_geometry() {
   wall_velocity_stale_ = false;
 }
 
+void Solver::bring_geometry_up_to_date() {
+  take_requested_sides();
+  if (geometry_stale_ || !built_) update_geometry();
+}
+
 void Solver::refresh_wall_velocity() {
   promote_moved_bodies();
   boundary_.refresh_velocity(bodies_);

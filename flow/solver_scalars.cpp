@@ -18,8 +18,7 @@ void Solver::carry_scalars(bool old_velocity_counts) {
 }
 
 void Solver::prepare_scalars() {
-  take_requested_sides();
-  if (geometry_stale_ || !built_) update_geometry();
+  bring_geometry_up_to_date();
   fill_velocity(velocity_, 1);
   scalars_.prepare(scalar_flow(velocity_));
 }

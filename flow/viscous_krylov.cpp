@@ -36,14 +36,10 @@ struct SideExchange {
   }
 };
 
-Real smallest_spacing(const Grid& grid) {
-  return std::min({grid.spacing[0], grid.spacing[1], grid.spacing[2]});
-}
-
 /// Regular exchange along each axis, in units of that along the smallest spacing.
 Real3 relative_exchange(const Grid& grid) {
   Real3 along;
-  for (int a = 0; a < 3; ++a) along[a] = std::pow(smallest_spacing(grid) / grid.spacing[a], 2);
+  for (int a = 0; a < 3; ++a) along[a] = std::pow(grid.smallest_spacing() / grid.spacing[a], 2);
   return along;
 }
 
@@ -162,7 +158,7 @@ struct OuterPoints {
     step = layout.stride(c);
     const Diffusion<Real> diffusion(system);
     const Real across = diffusion.along(c);
-    const Real unit = std::pow(smallest_spacing(system.grid), 2) / system.diffusion;
+    const Real unit = std::pow(system.grid.smallest_spacing(), 2) / system.diffusion;
     tie = static_cast<float>(across / (1 + across));
     inverse = static_cast<float>(1 / (unit * (diffusion.diagonal - across)));
   }
@@ -207,7 +203,7 @@ bool ViscousKrylov::fits(const DomainSides& sides) const {
 }
 
 void ViscousKrylov::set_system(const ViscousSystem& system) {
-  const Real volume = std::pow(smallest_spacing(system.grid), 2) / system.diffusion;
+  const Real volume = std::pow(system.grid.smallest_spacing(), 2) / system.diffusion;
   fill_regular_rows(system, volume, links_, reaction_);
   fill_wall_rows(system, system.fixed_rows, links_, reaction_);
   fill_wall_rows(system, system.moving_rows, links_, reaction_);

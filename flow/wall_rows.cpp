@@ -94,9 +94,8 @@ void build_wall_rows(int c, const SolidSampler& solid, const FaceVector<OpenFrac
   const Index kept = rows.count;
   for_each(
       "flow::build_wall_rows", total, KOKKOS_LAMBDA(Index n) {
-        const Index row = scratch(n);
-        const bool is_kept = (n + 1 < total ? scratch(n + 1) : kept) > row;
-        if (is_kept) fill_row(target, row, c, sampler, fraction, box, region.cell(n));
+        if (!is_kept(scratch, n, total, kept)) return;
+        fill_row(target, scratch(n), c, sampler, fraction, box, region.cell(n));
       });
   chain_rows(layout, rows);
 }

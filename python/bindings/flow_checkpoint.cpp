@@ -19,7 +19,6 @@ constexpr std::int64_t motion_columns = 18;
 /// the body force is still to be balanced), and bodies (n, 18): translation, rotation, linear and angular
 /// velocity, centre, pinned, dynamic.
 nb::dict checkpoint(Solver& solver) {
-  if (!solver.has_geometry()) solver.update_geometry();
   nb::dict state;
   for (const StoredField& stored : solver.stored_fields()) {
     const Box& box = stored.box;

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import operator
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
+
+
+T = TypeVar("T")
 
 
 def _describe(value: Any) -> str:
@@ -152,3 +155,19 @@ def choice(value: Any, name: str, choices: Sequence[str]) -> str:
     if value not in choices:
         raise wrong_value(name, expected, value)
     return value
+
+
+def code(value: Any, name: str, codes: Mapping[str | int, T], expected: str) -> T:
+    """What a name, or the integer that older scripts use for it, stands for.
+
+    >>> code(1, "scheme", {"koren": "k", 1: "k"}, "'koren' or 1")
+    'k'
+    """
+    if not isinstance(value, str):
+        try:
+            value = integer(value, name)
+        except TypeError:
+            raise wrong_type(name, expected, value) from None
+    if value not in codes:
+        raise wrong_value(name, expected, value)
+    return codes[value]

@@ -25,6 +25,15 @@ _ABSENT = {
 }
 
 
+FACES = ("-x", "+x", "-y", "+y", "-z", "+z")
+_FACE_NUMBERS: dict[str | int, int] = {name: n for n, face in enumerate(FACES) for name in (face, n)}
+
+
+def face_number(face: Any) -> int:
+    """Place of a side of the box in FACES, from its name or that number itself."""
+    return _checks.code(face, "face", _FACE_NUMBERS, f"one of {', '.join(map(repr, FACES))}, or 0 to 5")
+
+
 def absent(owner: object, name: str) -> NoReturn:
     """Raise AttributeError, saying what peclet-resolved leaves out if the name belongs to it."""
     for subject, pattern in _ABSENT.items():

@@ -7,11 +7,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from peclet import _checks
 from peclet.flow import _flow
-from peclet.flow._base import Part
+from peclet.flow._base import FACES, Part, face_number
 
 SideKind = _flow.SideKind
 
-_FACES = ("-x", "+x", "-y", "+y", "-z", "+z")
 _KINDS = {
     "periodic": SideKind.PERIODIC,
     "wall": SideKind.WALL,
@@ -59,7 +58,7 @@ class Boundaries(Part):
         >>> lid.domain_bc['+y']
         Side(type='wall', velocity=(1.0, 0.0, 0.0))
         """
-        axis, high = _side(face)
+        axis, high = divmod(face_number(face), 2)
         kind = _kind(type)
         self._core.set_side(axis, high, _KINDS[kind], _velocity(kind, axis, velocity, components))
 
@@ -69,7 +68,7 @@ class Boundaries(Part):
         profile: shape (n_b, n_c, 3), the velocity vector in the faces of the side, b and c being the two
         other axes in ascending order.
         """
-        axis, high = _side(face)
+        axis, high = divmod(face_number(face), 2)
         b, c = (a for a in range(3) if a != axis)
         values = _checks.field(profile, "profile", (self._cells[b], self._cells[c], 3))
         self._core.set_side_profile(axis, high, np.asfortranarray(values))
@@ -78,25 +77,11 @@ class Boundaries(Part):
     def domain_bc(self) -> dict[str, Side]:
         """Condition on each side; where a profile is set, velocity is its mean."""
         sides = {}
-        for number, face in enumerate(_FACES):
+        for number, face in enumerate(FACES):
             kind, velocity = self._core.side(number // 2, number % 2)
             name = next(name for name, value in _KINDS.items() if value == kind)
             sides[face] = Side(name, tuple(velocity))
         return sides
-
-
-def _side(face: Any) -> tuple[int, int]:
-    expected = "one of '-x', '+x', '-y', '+y', '-z', '+z', or 0 to 5"
-    if isinstance(face, str):
-        if face not in _FACES:
-            raise _checks.wrong_value("face", expected, face)
-        number = _FACES.index(face)
-    else:
-        try:
-            number = _checks.integer(face, "face", 0, 5)
-        except TypeError:
-            raise _checks.wrong_type("face", expected, face) from None
-    return number // 2, number % 2
 
 
 def _kind(kind: Any) -> str:
@@ -105,13 +90,9 @@ def _kind(kind: Any) -> str:
     if isinstance(kind, str):
         plain = kind.lower().replace("-", "").replace("_", "").replace(" ", "")
         plain = _ALIASES.get(plain, plain)
-        if plain not in _KINDS:
-            raise _checks.wrong_value("type", expected, kind)
-        return plain
-    try:
-        return names[_checks.integer(kind, "type", 0, len(names) - 1)]
-    except TypeError:
-        raise _checks.wrong_type("type", expected, kind) from None
+        kind = plain if plain in _KINDS else kind
+    codes: dict[str | int, str] = {code: name for n, name in enumerate(names) for code in (name, n)}
+    return _checks.code(kind, "type", codes, expected)
 
 
 def _velocity(kind: str, axis: int, given: tuple[Any, ...], named: dict[str, Any]) -> tuple[float, ...]:

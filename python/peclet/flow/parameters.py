@@ -30,16 +30,7 @@ def _scheme(value: Any) -> _flow.AdvectionScheme:
                 "scheme", expected + " other than NONE: use set_advection(False)", value
             )
         return value
-    if isinstance(value, str):
-        if value not in _SCHEMES:
-            raise _checks.wrong_value("scheme", expected, value)
-        return _SCHEMES[value]
-    try:
-        return _SCHEMES[_checks.integer(value, "scheme")]
-    except TypeError:
-        raise _checks.wrong_type("scheme", expected, value) from None
-    except KeyError:
-        raise _checks.wrong_value("scheme", expected, value) from None
+    return _checks.code(value, "scheme", _SCHEMES, expected)
 
 
 class Parameters(Part):

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from peclet import _checks
 from peclet.flow import _flow
-from peclet.flow._base import Part, SolverReport
+from peclet.flow._base import Part, SolverReport, face_number
 
 ScalarScheme = _flow.ScalarScheme
 ScalarCondition = _flow.ScalarCondition
@@ -30,38 +30,9 @@ _SCHEMES: dict[str | int, _flow.ScalarScheme] = {
     2: ScalarScheme.SECOND_UPWIND,
 }
 _CONDITIONS = {"dirichlet": ScalarCondition.VALUE, "neumann": ScalarCondition.FLUX}
-FACES = ("-x", "+x", "-y", "+y", "-z", "+z")
+_SCHEME_NAMES = "'koren', 'sou', 'fou', 0 (fou), 1 (koren) or 2 (sou)"
 _RESERVED = ("p", "sdf", "u", "v", "w")
 _ITERATIONS = 2**31 - 1
-
-
-def _scheme(value: Any) -> _flow.ScalarScheme:
-    expected = "'koren', 'sou', 'fou', 0 (fou), 1 (koren) or 2 (sou)"
-    if isinstance(value, str):
-        if value not in _SCHEMES:
-            raise _checks.wrong_value("scheme", expected, value)
-        return _SCHEMES[value]
-    try:
-        return _SCHEMES[_checks.integer(value, "scheme")]
-    except TypeError:
-        raise _checks.wrong_type("scheme", expected, value) from None
-    except KeyError:
-        raise _checks.wrong_value("scheme", expected, value) from None
-
-
-def _face(value: Any) -> int:
-    expected = "one of " + ", ".join(map(repr, FACES)) + ", or their place 0 to 5"
-    if isinstance(value, str):
-        if value not in FACES:
-            raise _checks.wrong_value("face", expected, value)
-        return FACES.index(value)
-    try:
-        number = _checks.integer(value, "face")
-    except TypeError:
-        raise _checks.wrong_type("face", expected, value) from None
-    if not 0 <= number < len(FACES):
-        raise _checks.wrong_value("face", expected, number)
-    return number
 
 
 class ScalarCalls(Part):
@@ -137,7 +108,7 @@ class Scalars(ScalarCalls):
             taken = ", ".join(map(repr, (*_RESERVED, *self._core.scalar_names)))
             raise _checks.wrong_value("name", f"a name other than {taken}", name)
         value = _checks.non_negative(diffusivity, "diffusivity")
-        chosen = _scheme(scheme)
+        chosen = _checks.code(scheme, "scheme", _SCHEMES, _SCHEME_NAMES)
         cap = None if iters is None else _checks.integer(iters, "iters", 1, _ITERATIONS)
         _checks.flag(cutcell, "cutcell")
         self._core.add_scalar(name, value, chosen)
@@ -184,7 +155,7 @@ class Scalars(ScalarCalls):
         one entry per face of the side, of shape (ny, nz), (nx, nz) or (nx, ny).
         """
         name = self._scalar(name)
-        number = _face(face)
+        number = face_number(face)
         if self._core.side(number // 2, number % 2)[0] == _flow.SideKind.PERIODIC:
             raise _checks.wrong_value(
                 "face", "a side that set_domain_bc() has made other than periodic", face
