@@ -17,18 +17,17 @@ Period period_of(const Grid& grid, const Periodicity& periodic) {
   return period;
 }
 
-/// World-space bounds of a posed local box, relative to the translation.
-void rotated_bounds(const Body& body, Vec3& low, Vec3& high) {
-  low = {far_away, far_away, far_away};
-  high = -low;
+void bound(Body& body) {
+  body.low = {far_away, far_away, far_away};
+  body.high = -body.low;
   for (int corner = 0; corner < 8; ++corner) {
     const Vec3 local{corner & 1 ? body.local_high.x : body.local_low.x,
                      corner & 2 ? body.local_high.y : body.local_low.y,
                      corner & 4 ? body.local_high.z : body.local_low.z};
     const Vec3 arm = body.pose.scale * rotate(body.pose.rotation, local);
     for (int a = 0; a < 3; ++a) {
-      low[a] = std::min(low[a], arm[a]);
-      high[a] = std::max(high[a], arm[a]);
+      body.low[a] = std::min(body.low[a], arm[a]);
+      body.high[a] = std::max(body.high[a], arm[a]);
     }
   }
 }
@@ -71,15 +70,14 @@ void Bodies::set_domain(const Periodicity& domain) {
 }
 
 void Bodies::compare_with_periods(Body& body) const {
-  Vec3 low, high;
-  rotated_bounds(body, low, high);
+  bound(body);
   body.wide = body.meets_images = false;
   for (int a = 0; a < 3; ++a) {
     if (!geometry_.images.axis[a]) continue;
     // a band around the surface must see the true distance through the nearest image alone
-    const Real reach = std::max(-low[a], high[a]) + 4 * grid_.spacing[a];
+    const Real reach = std::max(-body.low[a], body.high[a]) + 4 * grid_.spacing[a];
     body.wide = body.wide || reach > 0.5 * grid_.extent(a);
-    body.meets_images = body.meets_images || high[a] - low[a] > grid_.extent(a);
+    body.meets_images = body.meets_images || body.high[a] - body.low[a] > grid_.extent(a);
   }
 }
 
@@ -156,14 +154,12 @@ Box Bodies::region(int b, int margin) const {
   const Body& body = (*this)[b];
   Box region;
   if (body.pose.scale == 0) return region;
-  Vec3 low, high;
-  rotated_bounds(body, low, high);
   const Vec3 start = body.pose.translation - Vec3{grid_.origin[0], grid_.origin[1], grid_.origin[2]};
   for (int a = 0; a < 3; ++a) {
     const Real h = grid_.spacing[a];
     const int n = grid_.cells[a];
-    const Real first = std::floor((start[a] + low[a]) / h) - margin;
-    const Real last = std::ceil((start[a] + high[a]) / h) + margin;
+    const Real first = std::floor((start[a] + body.low[a]) / h) - margin;
+    const Real last = std::ceil((start[a] + body.high[a]) / h) + margin;
     if (geometry_.images.axis[a]) {
       if (last - first >= n) {
         region.low[a] = 0;

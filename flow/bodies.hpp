@@ -17,6 +17,7 @@ struct Body {
   Twist twist;
   Vec3 center;                 // of rotation
   Vec3 local_low, local_high;  // bounds in the frame of the root
+  Vec3 low, high;              // bounds along the axes of the box, relative to the translation
   bool wide = false;           // reaches beyond half a period: images other than the nearest matter
   bool meets_images = false;   // longer than a period
   bool dynamic = false;        // re-sampled at every geometry update
@@ -56,8 +57,21 @@ struct BodyGeometry {
     if (body.pose.scale == 0) return far_away;
     const Vec3 near = body.pose.translation + images.nearest(x - body.pose.translation);
     Real d = program.distance(body.slot, body.pose, near);
-    if (body.wide) d = distance_with_images(body, near, d);
+    if (body.wide && !is_nearest_image(body, near, d)) d = distance_with_images(body, near, d);
     return d;
+  }
+
+  /// No other image can be nearer than d.
+  KOKKOS_INLINE_FUNCTION bool is_nearest_image(const Body& body, Vec3 x, Real d) const {
+    for (int a = 0; a < 3; ++a) {
+      if (!images.axis[a]) continue;
+      const Real arm = x[a] - body.pose.translation[a];
+      const Real beyond_high = arm + images.length[a] - body.high[a];
+      const Real beyond_low = body.low[a] - arm + images.length[a];
+      const Real gap = beyond_high < beyond_low ? beyond_high : beyond_low;
+      if (gap <= 0 || gap < d) return false;
+    }
+    return true;
   }
 
   /// Velocity of the surface of body b at x.
