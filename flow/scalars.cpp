@@ -15,11 +15,17 @@ namespace {
 /// Implicit weight of diffusion from the second step on, see flow/momentum.hpp.
 constexpr Real second_order_weight = 9.0 / 16.0;
 
-Array<ScalarWall> walls_of(const Scalar& scalar, int bodies) {
+/// The walls of the scalar for kernels, as ScalarGeometry wants them.
+const Array<ScalarWall>& walls_of(Scalar& scalar, int bodies) {
   std::vector<ScalarWall> walls(static_cast<std::size_t>(bodies) + 2, scalar.wall);
   for (std::size_t b = 0; b < scalar.walls.size() && b < static_cast<std::size_t>(bodies); ++b)
     if (scalar.walls[b]) walls[b + 2] = *scalar.walls[b];
-  return copy_from_host("flow::scalar_walls", walls.data(), static_cast<Index>(walls.size()));
+  if (scalar.wall_of_owner.extent(0) != walls.size())
+    scalar.wall_of_owner = Array<ScalarWall>("flow::scalar_walls", walls.size());
+  const Kokkos::View<const ScalarWall*, Kokkos::HostSpace, Kokkos::MemoryUnmanaged> host(walls.data(),
+                                                                                         walls.size());
+  Kokkos::deep_copy(scalar.wall_of_owner, host);
+  return scalar.wall_of_owner;
 }
 
 /// Cells that became fluid have no past; solid cells of walls of given value take that value.
@@ -79,6 +85,7 @@ int Scalars::add(const std::string& name, const ScalarSettings& settings) {
     advected_ = Field<Real>("flow::scalar_advected", layout);
     residual_ = Field<Real>("flow::scalar_residual", layout);
     correction_ = Field<Real>("flow::scalar_correction", layout);
+    old_state_ = Field<OpenFraction>("flow::scalar_old_state", layout);
     scratch_ = Array<Index>("flow::scalar_scratch", static_cast<std::size_t>(grid_.number_of_cells()));
     diffusion_solver_.emplace(layout);
     plan_ = SweepPlan(grid_.cells, Box{{0, 0, 0}, grid_.cells}, {true, true, true});
@@ -153,10 +160,9 @@ void Scalars::prepare(Scalar& scalar, const ScalarFlow& flow) {
   ScalarFields& f = scalar.fields;
   if (scalar.geometry_stale) {
     const ScalarGeometry geometry{flow.solid, flow.open, scalar.sides, walls_of(scalar, flow.bodies)};
-    const Field<OpenFraction> old_state("flow::scalar_old_state", f.state.layout());
-    Kokkos::deep_copy(old_state.array(), f.state.array());
+    Kokkos::deep_copy(old_state_.array(), f.state.array());
     classify_cells(geometry, f.state, f.volume);
-    start_cells(geometry, old_state, f);
+    start_cells(geometry, old_state_, f);
     build_scalar_rows(geometry, f.state, f.volume, scratch_, scalar.rows);
     build_extension(geometry, f.state, scratch_, scalar.extension);
     scalar.is_conservative = !any_value_given(scalar.rows);
@@ -305,7 +311,8 @@ Real3 Scalars::mean_flux(int n, const ScalarFlow& flow) const {
 std::size_t Scalars::bytes() const {
   if (scalars_.empty()) return 0;
   const std::size_t cells = predicted_.array().extent(0);
-  std::size_t total = cells * (4 * sizeof(Real) + sizeof(Index)) + diffusion_solver_->bytes();
+  std::size_t total =
+      cells * (4 * sizeof(Real) + sizeof(OpenFraction) + sizeof(Index)) + diffusion_solver_->bytes();
   for (const Scalar& scalar : scalars_) {
     const std::size_t rows = scalar.rows.source.extent(0);
     total += cells * (3 * sizeof(Real) + sizeof(OpenFraction) + sizeof(float)) +

@@ -38,6 +38,7 @@ struct Scalar {
   ScalarSides sides;
   ScalarWall wall;                               // of every body but those that follow
   std::vector<std::optional<ScalarWall>> walls;  // per body
+  Array<ScalarWall> wall_of_owner;               // the same where kernels run, see ScalarGeometry
   Field<Real> source_field;
   ScalarFields fields;  // predicted and advected are shared between scalars
 
@@ -101,6 +102,7 @@ class Scalars {
   std::deque<Scalar> scalars_;
   Buoyancy buoyancy_;
   Field<Real> predicted_, advected_, residual_, correction_;
+  Field<OpenFraction> old_state_;
   Array<Index> scratch_;
   std::optional<ViscousSolver> diffusion_solver_;
   ScatterSum sums_;
