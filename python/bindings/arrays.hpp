@@ -249,22 +249,39 @@ NumpyArray<T> to_numpy(const std::vector<T>& values, Shape shape = {}, Order ord
 
 inline NumpyArray<double> to_numpy(Vec3 v) { return to_numpy(std::vector<double>{v.x, v.y, v.z}); }
 
-/// The numbers of an array as one row of columns per element, without a copy: writing to either changes both.
-/// NumPy on the host, DLPack on a device.
+/// Memory that lives as long as owner, without a copy: NumPy on the host, DLPack on a device.
+inline nb::object shared_memory(double* first, const std::vector<std::size_t>& shape,
+                                const nb::capsule& owner, const std::vector<std::int64_t>& strides = {}) {
+  const std::int64_t* const steps = strides.empty() ? nullptr : strides.data();
+  if constexpr (runs_on_host)
+    return nb::cast(nb::ndarray<nb::numpy, double>(first, shape.size(), shape.data(), owner, steps),
+                    nb::rv_policy::reference);
+  else
+    return nb::cast(nb::ndarray<double>(first, shape.size(), shape.data(), owner, steps, nb::dtype<double>(),
+                                        nb::device::cuda::value),
+                    nb::rv_policy::reference);
+}
+
+/// The numbers of an array as one row of columns per element: writing to either changes both.
 template <class T>
 nb::object view_of(const Array<T>& array, Index rows) {
   constexpr std::size_t columns = sizeof(T) / sizeof(double);
   const nb::capsule owner(new Array<T>(array),
                           [](void* view) noexcept { delete static_cast<Array<T>*>(view); });
-  const std::size_t shape[] = {static_cast<std::size_t>(rows), columns};
-  auto* numbers = reinterpret_cast<double*>(array.data());
-  constexpr std::size_t axes = columns == 1 ? 1 : 2;
-  if constexpr (runs_on_host)
-    return nb::cast(nb::ndarray<nb::numpy, double>(numbers, axes, shape, owner), nb::rv_policy::reference);
-  else
-    return nb::cast(nb::ndarray<double>(numbers, axes, shape, owner, nullptr, nb::dtype<double>(),
-                                        nb::device::cuda::value),
-                    nb::rv_policy::reference);
+  std::vector<std::size_t> shape{static_cast<std::size_t>(rows)};
+  if constexpr (columns > 1) shape.push_back(columns);
+  return shared_memory(reinterpret_cast<double*>(array.data()), shape, owner);
+}
+
+/// The cells of a field, shape (nx, ny, nz) and x fastest, rows apart by ghosts and padding: writing to
+/// either changes both.
+inline nb::object view_of(const Field<double>& field) {
+  const nb::capsule owner(new Field<double>(field),
+                          [](void* view) noexcept { delete static_cast<Field<double>*>(view); });
+  const Layout& layout = field.layout();
+  std::vector<std::size_t> shape;
+  for (int a = 0; a < 3; ++a) shape.push_back(static_cast<std::size_t>(layout.cells[a]));
+  return shared_memory(field.data() + layout(0, 0, 0), shape, owner, {1, layout.pitch_y, layout.pitch_z});
 }
 
 /// Its first rows elements, copied.

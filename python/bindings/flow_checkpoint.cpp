@@ -1,6 +1,8 @@
 // Whole state of the compiled solver, for runs that go on bit by bit.
 #include "python/bindings/flow_checkpoint.hpp"
 
+#include <nanobind/stl/string.h>
+
 #include "core/field_transfer.hpp"
 #include "python/bindings/arrays.hpp"
 
@@ -79,10 +81,20 @@ void restore(Solver& solver, const nb::dict& state) {
   solver.restore_clock(past);
 }
 
+/// The memory of a field of the checkpoint.
+nb::object field_view(Solver& solver, const std::string& name) {
+  for (const StoredField& stored : solver.stored_fields())
+    if (stored.name == name) return python::view_of(stored.field);
+  require(false, "name", "a field of the checkpoint", "'" + name + "'");
+  return nb::none();
+}
+
 }  // namespace
 
 void define_checkpoint(nb::class_<Solver>& solver) {
-  solver.def("checkpoint", &checkpoint).def("restore", &restore, "state"_a);
+  solver.def("checkpoint", &checkpoint)
+      .def("restore", &restore, "state"_a)
+      .def("field_view", &field_view, "name"_a);
 }
 
 }  // namespace peclet::flow

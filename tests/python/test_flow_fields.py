@@ -205,3 +205,61 @@ def test_a_checkpoint_that_does_not_fit_is_refused():
             solver.restore(broken)
         for key, values in solver.checkpoint().items():
             assert np.array_equal(values, before[key]), key
+
+
+# ------------------------------------------------------------------------------------------- without a copy
+
+
+@pytest.mark.parametrize("name", ["u", "v", "w", "p", "heat"])
+def test_views_are_the_memory(values, name):
+    solver = flow.Solver(*SHAPE)
+    solver.add_scalar("heat", 0.1)
+    solver.set_field(name, values)
+    view = solver.diagnostics.field_view(name)
+    np.testing.assert_array_equal(view, values)
+    assert np.shares_memory(view, solver.field_view(name))
+    view[1, 2, 3] = 5
+    assert solver.get_field(name)[1, 2, 3] == 5
+    solver.set_field(name, 2 * values)
+    np.testing.assert_array_equal(view, 2 * values)
+
+
+def test_dlpack_shares_the_memory(values):
+    solver = flow.Solver(*SHAPE)
+    solver.set_field("p", values)
+    taken = np.from_dlpack(solver.field_view("p"))
+    assert np.shares_memory(taken, solver.field_view("p"))
+    taken[2, 1, 0] = -3
+    assert solver.get_p()[2, 1, 0] == -3
+    copy = solver.get_p()
+    assert np.shares_memory(np.from_dlpack(copy), copy)
+
+
+def test_views_outlive_the_solver(values):
+    solver = flow.Solver(*SHAPE)
+    solver.set_field("p", values)
+    view = np.from_dlpack(solver.field_view("p"))
+    del solver
+    np.testing.assert_array_equal(view, values)
+
+
+def test_what_views_wrote_counts_once_it_is_set(values):
+    one, other = flow.Solver(*SHAPE), flow.Solver(*SHAPE)
+    for solver in (one, other):
+        box_with(solver, ((3, 2, 4), 1.6))
+        solver.set_dt(0.1)
+        solver.step()
+    view = one.field_view("u")
+    view[:] = values
+    one.set_field("u", view)
+    other.set_field("u", values)
+    for solver in (one, other):
+        solver.step()
+    np.testing.assert_array_equal(one.get_u(), other.get_u())
+    np.testing.assert_array_equal(one.get_p(), other.get_p())
+
+
+@pytest.mark.parametrize("name", ["sdf", "temperature", "u_previous", 3])
+def test_views_of_what_does_not_exist(name):
+    with pytest.raises((ValueError, TypeError), match="name"):
+        flow.Solver(*SHAPE).field_view(name)

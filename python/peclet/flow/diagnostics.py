@@ -42,6 +42,25 @@ class Instruments(ScalarInstruments):
         """Whether the last pressure solve met its cap before its tolerance."""
         return not self.pressure_report.converged
 
+    def field_view(self, name: str) -> Any:
+        """The memory of 'u', 'v', 'w', 'p' or a scalar, without a copy: a NumPy array of shape (nx, ny, nz).
+
+        numpy.from_dlpack(), torch.from_dlpack() and the like take it without a copy too; on a GPU it is an
+        object for their from_dlpack() alone. The memory lives as long as the view, but the next step() may
+        exchange it for another: take a view anew after each. Inside solid it holds the velocity of the body. It can
+        be written to; set_field(name, view) then tells the solver, as after any other change from outside.
+
+        >>> from peclet.flow import Solver
+        >>> solver = Solver(8, 6, 4)
+        >>> u = solver.diagnostics.field_view("u")
+        >>> u[:] = 0.5; solver.set_field("u", u)
+        >>> bool((solver.get_u() == 0.5).all()), bool(np.shares_memory(np.from_dlpack(u), u))
+        (True, True)
+        """
+        names = ("u", "v", "w", "p", *self._core.scalar_names)
+        name = _checks.choice(name, "name", names)
+        return self._core.field_view(f"scalar_{name}" if name in self._core.scalar_names else name)
+
     def last_step_timers(self) -> dict[str, float]:
         """Seconds spent in the parts of the last step."""
         return dict(self._core.times())

@@ -1,7 +1,7 @@
 """Reading and writing the flow. Arrays are float64 in Fortran order of shape (nx, ny, nz), indexed [x, y, z].
 
 u[i, j, k] lives on the low x face of its cell, v and w on the low y and z faces, p and sdf at its centre.
-What a call returns is a copy.
+What a call returns is a copy; diagnostics.field_view() gives the memory itself.
 """
 
 from __future__ import annotations
