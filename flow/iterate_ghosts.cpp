@@ -42,9 +42,10 @@ bool is_exact(const GhostRule& rule) { return rule.at < 0 || (rule.near * rule.n
 /// Where on the axis the source is.
 int source_index(const GhostRule& rule, Index step) { return rule.at + static_cast<int>(rule.source / step); }
 
-void put_right_on_side(const GhostRounding& rounding, int axis, const GhostRule& rule) {
+template <class Weight>
+void put_right_on_side(const GhostRounding<Weight>& rounding, int axis, const GhostRule& rule) {
   if (is_exact(rule)) return;
-  const GhostRounding target = rounding;
+  const GhostRounding<Weight> target = rounding;
   const GhostRule applied = rule;
   for_each_cell(
       "flow::ghost_rounding", places_of(rule, rounding.layout, axis),
@@ -53,22 +54,27 @@ void put_right_on_side(const GhostRounding& rounding, int axis, const GhostRule&
 
 }  // namespace
 
-void GhostRounding::finish_row(int j, int k) const {
-  const Index row = layout(0, j, k);
+template <class Weight>
+void GhostRounding<Weight>::finish_row(int j, int k) const {
+  const Index row = layout(0, j, k), last = row + layout.cells[0];
   for (const GhostRule& rule : rules.side[0])
     if (!is_exact(rule)) apply(0, rule, row + rule.at);
   for (int axis = 1; axis < 3; ++axis)
     for (const GhostRule& rule : rules.side[axis]) {
       if (is_exact(rule) || source_index(rule, layout.stride(axis)) != (axis == 1 ? j : k)) continue;
       PECLET_INDEPENDENT_ITERATIONS
-      for (Index p = row; p <= row + layout.cells[0]; ++p) apply(axis, rule, p - rule.source);
+      for (Index p = row; p <= last; ++p) apply(axis, rule, p - rule.source);
     }
 }
 
-void GhostRounding::finish() const {
+template <class Weight>
+void GhostRounding<Weight>::finish() const {
   for (int axis = 0; axis < 3; ++axis)
     for (const GhostRule& rule : rules.side[axis]) put_right_on_side(*this, axis, rule);
 }
+
+template struct GhostRounding<DiffusiveWeight>;
+template struct GhostRounding<AdvectiveWeight>;
 
 GhostRules::GhostRules(const Layout& layout, const DomainSides& sides, int c) {
   for (int axis = 0; axis < 3; ++axis)

@@ -3,6 +3,7 @@
 // there.
 #include "core/sweep_stage.hpp"
 #include "flow/domain_sides.hpp"
+#include "flow/upwind_advection.hpp"
 
 namespace peclet::flow {
 
@@ -60,16 +61,34 @@ struct IterateGhosts {
   }
 };
 
+/// Weight of a ghost in A: of diffusion.
+struct DiffusiveWeight {
+  Real3 along;
+
+  KOKKOS_INLINE_FUNCTION Real operator()(int axis, const GhostRule&, Index) const { return along[axis]; }
+};
+
+/// The same with upwind advection.
+struct AdvectiveWeight {
+  Real3 along;
+  UpwindAdvection<Real> upwind;
+
+  KOKKOS_INLINE_FUNCTION Real operator()(int axis, const GhostRule& rule, Index p) const {
+    return along[axis] + upwind.inflow(p + rule.source, 2 * axis + (rule.target > 0));
+  }
+};
+
 /// Part of a stage after residual -= A e: ghosts that rounding kept from following their rule are put right.
+template <class Weight>
 struct GhostRounding {
   Layout layout;
   GhostRules rules;
   const float* e;
   Real* residual;
-  Real3 along;  // weight of a ghost in A
+  Weight weight;
 
   KOKKOS_INLINE_FUNCTION void apply(int axis, const GhostRule& rule, Index p) const {
-    residual[p + rule.source] += along[axis] * (rule.value(e, p) - Real{e[p + rule.target]});
+    residual[p + rule.source] += weight(axis, rule, p) * (rule.value(e, p) - Real{e[p + rule.target]});
   }
 
   /// A rule is applied on the row of its source.

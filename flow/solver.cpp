@@ -13,6 +13,8 @@ namespace {
 
 /// Implicit weight of viscosity from the second step on, see flow/momentum.hpp.
 constexpr Real second_order_weight = 9.0 / 16.0;
+/// Courant number from which implicit advection, extrapolated in time, needs damping.
+constexpr Real extrapolation_limit = 0.5;
 /// Divergence that counts as zero, relative to velocity / spacing: what rounding leaves.
 constexpr Real divergence_rounding = 1e-13;
 /// Largest divergence after the projection, relative to velocity / spacing.
@@ -50,12 +52,21 @@ MomentumTerms Solver::momentum_terms() const {
   terms.density = settings_.density;
   terms.kinematic_viscosity = settings_.viscosity / settings_.density;
   if (previous_time_step_ > 0) {
-    terms.step_ratio = settings_.time_step / previous_time_step_;
-    terms.implicit_weight = second_order_weight;
+    const Real share = extrapolation_share();
+    terms.step_ratio = share * settings_.time_step / previous_time_step_;
+    terms.implicit_weight = 1 - share * (1 - second_order_weight);
   }
   for (int c = 0; c < 3; ++c) terms.acceleration[c] = settings_.body_force[c] / settings_.density;
   terms.scheme = settings_.advection;
   return terms;
+}
+
+/// How much of the second-order extrapolation a step takes: all of it in explicit runs and at small Courant
+/// numbers; less beyond, towards Euler's method, so that the deferred correction damps all waves.
+Real Solver::extrapolation_share() const {
+  if (!is_advection_implicit()) return 1;
+  const Real courant = courant_number();
+  return courant > extrapolation_limit ? extrapolation_limit / courant : 1;
 }
 
 void Solver::step() {
@@ -134,6 +145,10 @@ void Solver::predict_velocity(const MomentumTerms& terms, Real velocity_scale) {
                          boundary_.open()[c],
                          fixed_rows,
                          moving_rows};
+    if (is_advection_implicit()) {
+      system.carrier = terms.extrapolated;
+      system.advection_step = terms.time_step;
+    }
     {
       const Stopwatch watch(times_.momentum);
       compute_momentum_residual(c, terms, velocity_plan_[c], velocity_rows_[c], fixed_rows, moving_rows,

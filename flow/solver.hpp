@@ -134,6 +134,10 @@ class Solver {
   void geometry_rebuilt();
   void count_fluid_points();
   MomentumTerms momentum_terms() const;
+  bool is_advection_implicit() const {
+    return settings_.implicit_advection && settings_.advection != AdvectionScheme::None;
+  }
+  Real extrapolation_share() const;
   ScalarFlow scalar_flow(const FaceVector<Real>& carrier) const;
   void carry_scalars(bool old_velocity_counts);
 

@@ -43,15 +43,17 @@ Real3 relative_exchange(const Grid& grid) {
   return along;
 }
 
-/// Links between fluid points, 0 or fully_open, and what regular rows have besides.
-void fill_regular_rows(const ViscousSystem& system, Real volume, const FaceVector<OpenFraction>& links,
-                       const Field<float>& reaction) {
+/// Links between fluid points by diffusion, and what regular rows have besides. share: of diffusion in the
+/// largest exchange, for which fully_open stands.
+void fill_regular_rows(const ViscousSystem& system, Real volume, Real share,
+                       const FaceVector<OpenFraction>& links, const Field<float>& reaction) {
   const Layout layout = system.layout();
   const Field<OpenFraction> open = system.open;
   const FaceVector<OpenFraction> target = links;
   const Field<float> total = reaction;
   const SideExchange exchange(system.sides, system.component);
   const Real3 along = relative_exchange(system.grid);
+  const auto link = static_cast<OpenFraction>(share * fully_open);
   const int c = system.component;
   Box cells{{0, 0, 0}, layout.cells};
   for (int a = 0; a < 3; ++a) ++cells.high[a];
@@ -66,11 +68,11 @@ void fill_regular_rows(const ViscousSystem& system, Real volume, const FaceVecto
           const int n = layout.cells[a];
           const bool at_low = at[a] == 0, at_high = at[a] == n - 1, beyond = at[a] == n;
           const bool closed = !exchange.is_periodic[a] && (at_low || beyond);
-          target[a][p] = is_fluid && open[p - step] != 0 && !closed ? fully_open : OpenFraction(0);
+          target[a][p] = is_fluid && open[p - step] != 0 && !closed ? link : OpenFraction(0);
           for (int high = 0; high < 2; ++high) {
             // beside a side of the box: tangential points at both ends, normal ones next to the points on it
             const bool is_end = high ? at_high : at[a] == (a == c ? 1 : 0);
-            if (!exchange.is_periodic[a] && is_end) sum += along[a] * exchange.at[a][high];
+            if (!exchange.is_periodic[a] && is_end) sum += share * along[a] * exchange.at[a][high];
           }
         }
         total[p] = is_fluid ? static_cast<float>(sum) : 0.0F;
@@ -93,6 +95,7 @@ struct WallLinks {
   FaceVector<OpenFraction> links;
   Field<float> reaction;
   Real3 along;
+  Real share;
   bool is_periodic[3];
 
   KOKKOS_INLINE_FUNCTION void set_reaction(Index row) const {
@@ -100,7 +103,7 @@ struct WallLinks {
     const Index p = rows.face(row);
     Real sum = reaction[p];
     for (int d = 0; d < WallRows::directions; ++d)
-      if (rows.is_wall(row, d)) sum += along[d / 2] * rows.weight(row, d);
+      if (rows.is_wall(row, d)) sum += share * along[d / 2] * rows.weight(row, d);
     reaction[p] = static_cast<float>(row_factor(rows, row) * sum);
   }
 
@@ -114,21 +117,94 @@ struct WallLinks {
       const int n = layout.cells[a];
       const bool wraps = high && cell[a] == n - 1 && is_periodic[a];
       const Index q = p + (high ? (wraps ? 1 - n : 1) : 0) * layout.stride(a);
-      const Real missing = 0.5 * (1 - factor * rows.weight(row, 2 * a + high));
+      const Real missing = 0.5 * share * (1 - factor * rows.weight(row, 2 * a + high));
       const Real left = links[a][q] - fully_open * missing;
       links[a][q] = static_cast<OpenFraction>(left > 0 ? left : 0);
     }
   }
 };
 
-void fill_wall_rows(const ViscousSystem& system, const WallRows& rows, const FaceVector<OpenFraction>& links,
-                    const Field<float>& reaction) {
-  WallLinks walls{rows, system.layout(), links, reaction, relative_exchange(system.grid), {}};
+void fill_wall_rows(const ViscousSystem& system, const WallRows& rows, Real share,
+                    const FaceVector<OpenFraction>& links, const Field<float>& reaction) {
+  WallLinks walls{rows, system.layout(), links, reaction, relative_exchange(system.grid), share, {}};
   for (int a = 0; a < 3; ++a) walls.is_periodic[a] = system.sides.is_periodic(a);
   for_each("flow::viscous_wall_reaction", rows.count, KOKKOS_LAMBDA(Index row) { walls.set_reaction(row); });
   for (int high = 0; high < 2; ++high)
     for_each(
         "flow::viscous_wall_links", rows.count, KOKKOS_LAMBDA(Index row) { walls.weaken_links(row, high); });
+}
+
+/// Half of what advection carries through the faces: the symmetric part of U.
+struct UpwindExchange {
+  UpwindAdvection<Real> upwind;
+  Field<OpenFraction> open;
+  SideExchange exchange;
+  Real3 unit;  // exchange along each axis that a link of fully_open stands for
+
+  UpwindExchange(const ViscousSystem& system, Real largest)
+      : upwind(system.upwind<Real>()), open(system.open), exchange(system.sides, system.component) {
+    for (int a = 0; a < 3; ++a) unit[a] = largest / (system.grid.spacing[a] * system.grid.spacing[a]);
+  }
+
+  KOKKOS_INLINE_FUNCTION Real across(int axis, Index p) const {
+    return 0.5 * Kokkos::abs(upwind.carried(axis, p));
+  }
+};
+
+/// Diffusion that bounds the exchange between any two points.
+Real largest_exchange(const ViscousSystem& system) {
+  /// of advection where a step carries nothing: the preconditioner divides by the exchange
+  constexpr Real least = 1e-6;
+  const UpwindExchange exchange(system, 1);
+  const Layout layout = system.layout();
+  const Real carried = max_cells(
+      "flow::upwind_exchange", system.rows, KOKKOS_LAMBDA(int i, int j, int k) {
+        const Index p = layout(i, j, k);
+        Real largest = 0;
+        for (int a = 0; a < 3; ++a) {
+          const Real across = Kokkos::fmax(exchange.across(a, p), exchange.across(a, p + layout.stride(a)));
+          largest = Kokkos::fmax(largest, across / exchange.unit[a]);
+        }
+        return largest;
+      });
+  const Real smallest = system.grid.smallest_spacing();
+  return system.diffusion + std::max(carried, least * smallest * smallest);
+}
+
+/// Adds advection to the links, and to the reaction where what it brings is zero.
+void add_upwind_exchange(const ViscousSystem& system, Real largest, const FaceVector<OpenFraction>& links,
+                         const Field<float>& reaction) {
+  const UpwindExchange exchange(system, largest);
+  const Layout layout = system.layout();
+  const FaceVector<OpenFraction> target = links;
+  const Field<float> total = reaction;
+  const Real3 along = relative_exchange(system.grid);
+  const int c = system.component;
+  for_each_cell(
+      "flow::add_upwind_exchange", Box{{0, 0, 0}, layout.cells}, KOKKOS_LAMBDA(int i, int j, int k) {
+        const int at[3] = {i, j, k};
+        const Index p = layout(i, j, k);
+        if (exchange.open[p] == 0) return;
+        Real sum = 0;
+        for (int a = 0; a < 3; ++a) {
+          const Index step = layout.stride(a);
+          const bool closed = !exchange.exchange.is_periodic[a] && at[a] == 0;
+          if (exchange.open[p - step] != 0 && !closed) {
+            const Real more = fully_open * exchange.across(a, p) / exchange.unit[a];
+            const Real link = Real(target[a][p]) + more;
+            target[a][p] = static_cast<OpenFraction>(link < fully_open ? link : Real(fully_open));
+          }
+          for (int high = 0; high < 2; ++high) {
+            const Index face = high ? p + step : p;
+            const bool at_side = !exchange.exchange.is_periodic[a] && a != c &&
+                                 at[a] == (high ? layout.cells[a] - 1 : 0);
+            const bool is_zero =
+                at_side ? exchange.exchange.at[a][high] > 0 : exchange.open[high ? face : p - step] == 0;
+            if (is_zero) sum += along[a] * exchange.across(a, face) / exchange.unit[a];
+          }
+        }
+        total[p] += static_cast<float>(sum);
+      });
 }
 
 void scale_wall_rows(const WallRows& rows, const Field<float>& rhs) {
@@ -149,16 +225,17 @@ struct OuterPoints {
   Index step = 0;
   float tie = 0, inverse = 0;
 
-  explicit OuterPoints(const ViscousSystem& system) : layout(system.layout()), open(system.open) {
+  /// exchange: diffusion whose exchange the multigrid has at most.
+  OuterPoints(const ViscousSystem& system, Real exchange) : layout(system.layout()), open(system.open) {
     const int c = system.component;
     if (c < 0 || system.sides.side[c][1].kind != SideKind::Outflow) return;
     points = {{0, 0, 0}, layout.cells};
     points.low[c] = layout.cells[c];
     points.high[c] = layout.cells[c] + 1;
     step = layout.stride(c);
-    const Diffusion<Real> diffusion(system);
+    const Diffusion<Real> diffusion(system.grid, exchange);
     const Real across = diffusion.along(c);
-    const Real unit = std::pow(system.grid.smallest_spacing(), 2) / system.diffusion;
+    const Real unit = std::pow(system.grid.smallest_spacing(), 2) / exchange;
     tie = static_cast<float>(across / (1 + across));
     inverse = static_cast<float>(1 / (unit * (diffusion.diagonal - across)));
   }
@@ -203,10 +280,13 @@ bool ViscousKrylov::fits(const DomainSides& sides) const {
 }
 
 void ViscousKrylov::set_system(const ViscousSystem& system) {
-  const Real volume = std::pow(system.grid.smallest_spacing(), 2) / system.diffusion;
-  fill_regular_rows(system, volume, links_, reaction_);
-  fill_wall_rows(system, system.fixed_rows, links_, reaction_);
-  fill_wall_rows(system, system.moving_rows, links_, reaction_);
+  exchange_ = system.is_advected() ? largest_exchange(system) : system.diffusion;
+  const Real volume = std::pow(system.grid.smallest_spacing(), 2) / exchange_;
+  const Real share = system.diffusion / exchange_;
+  fill_regular_rows(system, volume, share, links_, reaction_);
+  fill_wall_rows(system, system.fixed_rows, share, links_, reaction_);
+  fill_wall_rows(system, system.moving_rows, share, links_, reaction_);
+  if (system.is_advected()) add_upwind_exchange(system, exchange_, links_, reaction_);
   for (int a = 0; a < 3; ++a) fill_periodic_ghosts(links_[a], system.sides.periodicity());
   multigrid_.set_volume_reaction(volume);
   multigrid_.update({Box{{0, 0, 0}, system.grid.cells}});
@@ -215,7 +295,7 @@ void ViscousKrylov::set_system(const ViscousSystem& system) {
 const Field<float>& ViscousKrylov::precondition(const ViscousSystem& system) {
   scale_wall_rows(system.fixed_rows, multigrid_.residual());
   scale_wall_rows(system.moving_rows, multigrid_.residual());
-  const OuterPoints outer(system);
+  const OuterPoints outer(system, exchange_);
   outer.restrict_to_inner(multigrid_.residual());
   multigrid_.apply();
   outer.prolong_to_outer(multigrid_.residual(), multigrid_.correction());
@@ -227,6 +307,18 @@ Real ViscousKrylov::multiply(const ViscousSystem& system, const Field<float>& e,
                              const Field<float>& other) {
   const Diffusion<float> diffusion(system);
   const WallRows &fixed = system.fixed_rows, &moving = system.moving_rows;
+  if (system.is_advected()) {
+    const UpwindAdvection<float> upwind = system.upwind<float>();
+    return sweep("flow::advected_product", *system.plan,
+                 Stage(system.rows, RegularProduct{e.layout(), e.data(), out.data(), diffusion},
+                       at_walls(fixed, WallProduct{fixed, e, out, diffusion}),
+                       at_walls(moving, WallProduct{moving, e, out, diffusion}),
+                       AddUpwind<float>{upwind, e.data(), out.data(), 1},
+                       at_walls(fixed, AddWallUpwind<float>{fixed, upwind, e, out, 1}),
+                       at_walls(moving, AddWallUpwind<float>{moving, upwind, e, out, 1}),
+                       MaskedDot{e.layout(), system.open.data(), out.data(), other.data()}))
+        .sum;
+  }
   return sweep("flow::viscous_product", *system.plan,
                Stage(system.rows, RegularProduct{e.layout(), e.data(), out.data(), diffusion},
                      at_walls(fixed, WallProduct{fixed, e, out, diffusion}),

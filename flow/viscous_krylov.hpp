@@ -1,8 +1,8 @@
 #pragma once
-// Stiff viscous systems: BiCGStab [VanDerVorst1992], preconditioned by one multigrid cycle per product.
+// Viscous systems that are stiff or advected: BiCGStab [VanDerVorst1992], preconditioned by one multigrid cycle per product.
 //
 // The cycle works on a symmetric relative of the operator: wall rows scaled, the exchange between neighbours
-// the mean of what their rows say. Vectors are in single precision; the caller recomputes the residual in
+// the mean of what their rows say, U by its symmetric part. Vectors are in single precision; the caller recomputes the residual in
 // double precision.
 #include "flow/multigrid.hpp"
 #include "flow/viscous_operator.hpp"
@@ -22,6 +22,9 @@ class ViscousKrylov {
   int solve(const ViscousSystem& system, const Field<Real>& residual, Real largest, Real reduction, int limit,
             const Field<float>& e, const Field<float>& r);
 
+  Real largest_diagonal(const ViscousSystem& system) const {
+    return Diffusion<Real>(system.grid, exchange_).diagonal;
+  }
   std::size_t bytes() const;
 
  private:
@@ -36,6 +39,7 @@ class ViscousKrylov {
   FaceVector<OpenFraction> links_;
   Field<float> reaction_;
   Field<float> shadow_, search_, product_;
+  Real exchange_ = 0;  // diffusion that bounds the exchange between neighbours
 };
 
 }  // namespace peclet::flow

@@ -1,6 +1,6 @@
 #pragma once
-// The operator 1 - theta dt nu L of one velocity component, row by row: the regular formula on the grid, wall
-// rows beside it.
+// The operator 1 + dt U - theta dt nu L of one velocity component, row by row: the regular formula on the grid,
+// wall rows beside it. U, upwind advection, is absent from explicit runs.
 #include "core/field.hpp"
 #include "core/sweep.hpp"
 #include "flow/domain_sides.hpp"
@@ -19,7 +19,14 @@ struct ViscousSystem {
   RowRanges rows;                   // beginning on whole vectors
   Field<OpenFraction> open;         // 0: row of a solid point, left out of norms
   WallRows fixed_rows, moving_rows;
+  FaceVector<Real> carrier{};  // v, where advection is implicit
+  Real advection_step = 0;     // dt; 0: no advection
 
+  bool is_advected() const { return advection_step > 0; }
+  template <class T>
+  UpwindAdvection<T> upwind() const {
+    return {grid, carrier, component, advection_step};
+  }
   Layout layout() const { return open.layout(); }
 };
 
@@ -29,10 +36,11 @@ struct Diffusion {
   T x, y, z;  // theta dt nu / h^2
   T diagonal;
 
-  explicit Diffusion(const ViscousSystem& system) {
+  explicit Diffusion(const ViscousSystem& system) : Diffusion(system.grid, system.diffusion) {}
+  Diffusion(const Grid& grid, Real diffusion) {
     T along[3];
     for (int a = 0; a < 3; ++a)
-      along[a] = static_cast<T>(system.diffusion / (system.grid.spacing[a] * system.grid.spacing[a]));
+      along[a] = static_cast<T>(diffusion / (grid.spacing[a] * grid.spacing[a]));
     x = along[0];
     y = along[1];
     z = along[2];

@@ -163,12 +163,35 @@ auto residual_stage(const ViscousSystem& system, const Field<float>& e, const Fi
                Accumulate<is_first>{layout, e.data(), residual.data(), correction.data(), diffusion},
                at_walls(fixed, WallCorrection{fixed, residual, e, diffusion}),
                at_walls(moving, WallCorrection{moving, residual, e, diffusion}),
-               OnRows<GhostRounding>{{layout,
-                                      GhostRules(layout, system.sides, system.component),
-                                      e.data(),
-                                      residual.data(),
-                                      {diffusion.x, diffusion.y, diffusion.z}}},
+               OnRows<GhostRounding<DiffusiveWeight>>{{layout,
+                                                       GhostRules(layout, system.sides, system.component),
+                                                       e.data(),
+                                                       residual.data(),
+                                                       {{diffusion.x, diffusion.y, diffusion.z}}}},
                FluidResidual{layout, system.open.data(), residual.data()});
+}
+
+/// The same with implicit advection.
+template <bool is_first>
+auto advected_residual_stage(const ViscousSystem& system, const Field<float>& e, const Field<Real>& residual,
+                             const Field<Real>& correction) {
+  const Layout layout = system.layout();
+  const Diffusion<Real> diffusion(system);
+  const UpwindAdvection<Real> upwind = system.upwind<Real>();
+  const WallRows &fixed = system.fixed_rows, &moving = system.moving_rows;
+  return Stage(
+      system.rows, Accumulate<is_first>{layout, e.data(), residual.data(), correction.data(), diffusion},
+      AddUpwind<Real>{upwind, e.data(), residual.data(), -1},
+      at_walls(fixed, WallCorrection{fixed, residual, e, diffusion}),
+      at_walls(moving, WallCorrection{moving, residual, e, diffusion}),
+      at_walls(fixed, AddWallUpwind<Real>{fixed, upwind, e, residual, -1}),
+      at_walls(moving, AddWallUpwind<Real>{moving, upwind, e, residual, -1}),
+      OnRows<GhostRounding<AdvectiveWeight>>{{layout,
+                                              GhostRules(layout, system.sides, system.component),
+                                              e.data(),
+                                              residual.data(),
+                                              {{diffusion.x, diffusion.y, diffusion.z}, upwind}}},
+      FluidResidual{layout, system.open.data(), residual.data()});
 }
 
 Spectrum bound_spectrum(const ViscousSystem& system) {
@@ -224,8 +247,9 @@ SolverReport ViscousSolver::solve(const ViscousSystem& system, const Field<Real>
   // rows of scalars in small cut cells are beyond the preconditioner
   const bool is_velocity = system.component >= 0;
   const bool is_stiff =
-      is_velocity && chebyshev_sweeps(spectrum, wanted_reduction(std::numeric_limits<Real>::min())) >
-                         std::min(sweeps_limit, iteration_limit);
+      system.is_advected() ||
+      (is_velocity && chebyshev_sweeps(spectrum, wanted_reduction(std::numeric_limits<Real>::min())) >
+                          std::min(sweeps_limit, iteration_limit));
   if (is_stiff) prepare_krylov(system);
   bool is_first = true;
   int setbacks = 0;
@@ -246,6 +270,11 @@ SolverReport ViscousSolver::solve(const ViscousSystem& system, const Field<Real>
   report.residual = scale > 0 ? norms.largest / scale : 0;
   report.converged = norms.largest <= tolerance;
   residual_sum = norms.sum;
+  if (system.is_advected()) {
+    const UpwindAdvection<Real> upwind = system.upwind<Real>();
+    residual_sum += upwind_leak(upwind, system.fixed_rows, correction) +
+                    upwind_leak(upwind, system.moving_rows, correction);
+  }
   return report;
 }
 
@@ -260,9 +289,12 @@ Norms ViscousSolver::krylov_cycle(const ViscousSystem& system, const Field<Real>
                                   const Field<Real>& correction, Real largest, Real wanted, int limit,
                                   SolverReport& report) {
   // what rounding of the iterate leaves of the residual
-  const Real attainable = std::numeric_limits<float>::epsilon() * Diffusion<Real>(system).diagonal;
+  const Real attainable = std::numeric_limits<float>::epsilon() * krylov_->largest_diagonal(system);
   const Real reduction = std::min(0.25, std::max(wanted, attainable));
   report.iterations += krylov_->solve(system, residual, largest, reduction, limit, iterate_, next_);
+  if (system.is_advected())
+    return sweep("flow::advected_residual", *system.plan,
+                 advected_residual_stage<is_first>(system, iterate_, residual, correction));
   return sweep("flow::viscous_residual", *system.plan,
                residual_stage<is_first>(system, iterate_, residual, correction));
 }

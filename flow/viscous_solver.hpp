@@ -1,12 +1,14 @@
 #pragma once
-// Solves (1 - theta dt nu L) e = residual for one velocity component, L with walls at their true distance.
+// Solves (1 + dt U - theta dt nu L) e = residual for one velocity component, L with walls at their true
+// distance, U where advection is implicit.
 //
 // Chebyshev iteration on the operator scaled by its diagonal [Saad2003, section 12.3]: rows are diagonally
 // dominant, so that the scaled operator has its spectrum within [1 - s, 1 + s],
 // s = b / (1 + b), b = theta dt nu sum_a 2 / h_a^2; rows beside a Wall or Inflow side of the box, whose
 // ghosts follow a parabola, reach further, to (1 + 8/3 b) / (1 + b). Sweeps run in single precision on the
 // residual, which is then recomputed in double precision, until the largest residual falls below the
-// tolerance. Where that takes many sweeps, ViscousKrylov takes their place: an iteration is one of its.
+// tolerance. Where that takes many sweeps, and always with U, ViscousKrylov takes their place: an iteration
+// is one of its.
 #include <memory>
 
 #include "flow/settings.hpp"
@@ -24,7 +26,8 @@ class ViscousSolver {
  public:
   explicit ViscousSolver(const Layout& layout);
 
-  /// On return correction = e, residual = what is left of it, residual_sum = its sum over fluid points.
+  /// On return correction = e, residual = what is left of it, residual_sum = its sum over fluid points and
+  /// what U took out of them at walls: momentum that would be lost.
   /// Stops when the largest residual is below tolerance times velocity_scale (or times the largest residual
   /// at the start, where the fluid was at rest).
   SolverReport solve(const ViscousSystem& system, const Field<Real>& residual, const Field<Real>& correction,

@@ -178,6 +178,11 @@ void define_settings(nb::class_<Solver>& solver) {
             change(s, [&](Settings& settings) { settings.advection = scheme; });
           })
       .def_prop_rw(
+          "implicit_advection", [](const Solver& s) { return s.settings().implicit_advection; },
+          [](Solver& s, bool on) {
+            change(s, [&](Settings& settings) { settings.implicit_advection = on; });
+          })
+      .def_prop_rw(
           "velocity_tolerance", [](const Solver& s) { return s.settings().velocity_tolerance; },
           [](Solver& s, double value) {
             require_positive(value, "rtol");

@@ -19,7 +19,7 @@ _ABSENT = {
     "variable fluid properties": r"propert|density_mode|rho_face|cell_force",
     "conjugate transfer into solids": r"scalar_solid|scalar_facets|scalar_census|scalar_geometry",
     "slip on bodies": r"slip_",
-    "implicit advection": r"implicit_advection|deferred_correction",
+    "implicit advection without deferred correction": r"deferred_correction",
     "distributed grids": r"decomposition|exchange_field|comm_avoiding",
     "fields of users": r"add_field",
 }

@@ -109,6 +109,24 @@ class Parameters(Part):
         if self._core.advection_scheme != AdvectionScheme.NONE:
             self._core.advection_scheme = self._status.scheme
 
+    def set_implicit_advection(self, on: bool) -> None:
+        """True: advection is implicit in time and stable at any Courant number; False (the default): explicit.
+
+        With v the extrapolated velocity and e its correction, div(v e), first-order upwind, joins the matrix
+        of the momentum equation; the explicit flux of v keeps the chosen scheme [KhoslaRubin1974, deferred
+        correction]. So a steady flow is that of the scheme, whatever the time step. Up to a Courant number C
+        of 1/2 the time scheme stays of second order; beyond, the extrapolation is weakened by 1 / (2 C),
+        towards Euler's method, which blurs what changes within a step. Scalars and moving bodies still need
+        time steps that resolve them. A step costs several explicit ones: worth it for steady flows, and where
+        few cells limit the step.
+        """
+        self._core.implicit_advection = _checks.flag(on, "on")
+
+    @property
+    def implicit_advection(self) -> bool:
+        """Whether advection, when on, is implicit."""
+        return self._core.implicit_advection
+
     @property
     def advection_scheme(self) -> str | None:
         """Name of the scheme in use, None for Stokes flow."""
