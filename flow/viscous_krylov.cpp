@@ -196,8 +196,8 @@ void add_upwind_exchange(const ViscousSystem& system, Real largest, const FaceVe
           }
           for (int high = 0; high < 2; ++high) {
             const Index face = high ? p + step : p;
-            const bool at_side = !exchange.exchange.is_periodic[a] && a != c &&
-                                 at[a] == (high ? layout.cells[a] - 1 : 0);
+            const bool at_side =
+                !exchange.exchange.is_periodic[a] && a != c && at[a] == (high ? layout.cells[a] - 1 : 0);
             const bool is_zero =
                 at_side ? exchange.exchange.at[a][high] > 0 : exchange.open[high ? face : p - step] == 0;
             if (is_zero) sum += along[a] * exchange.across(a, face) / exchange.unit[a];

@@ -1,9 +1,10 @@
 #pragma once
-// Viscous systems that are stiff or advected: BiCGStab [VanDerVorst1992], preconditioned by one multigrid cycle per product.
+// Viscous systems that are stiff or advected: BiCGStab [VanDerVorst1992], preconditioned by one multigrid
+// cycle per product.
 //
 // The cycle works on a symmetric relative of the operator: wall rows scaled, the exchange between neighbours
-// the mean of what their rows say, U by its symmetric part. Vectors are in single precision; the caller recomputes the residual in
-// double precision.
+// the mean of what their rows say, U by its symmetric part. Vectors are in single precision; the caller
+// recomputes the residual in double precision.
 #include "flow/multigrid.hpp"
 #include "flow/viscous_operator.hpp"
 

@@ -1,6 +1,6 @@
 #pragma once
-// The operator 1 + dt U - theta dt nu L of one velocity component, row by row: the regular formula on the grid,
-// wall rows beside it. U, upwind advection, is absent from explicit runs.
+// The operator 1 + dt U - theta dt nu L of one velocity component, row by row: the regular formula on the
+// grid, wall rows beside it. U, upwind advection, is absent from explicit runs.
 #include "core/field.hpp"
 #include "core/sweep.hpp"
 #include "flow/domain_sides.hpp"
@@ -39,8 +39,7 @@ struct Diffusion {
   explicit Diffusion(const ViscousSystem& system) : Diffusion(system.grid, system.diffusion) {}
   Diffusion(const Grid& grid, Real diffusion) {
     T along[3];
-    for (int a = 0; a < 3; ++a)
-      along[a] = static_cast<T>(diffusion / (grid.spacing[a] * grid.spacing[a]));
+    for (int a = 0; a < 3; ++a) along[a] = static_cast<T>(diffusion / (grid.spacing[a] * grid.spacing[a]));
     x = along[0];
     y = along[1];
     z = along[2];

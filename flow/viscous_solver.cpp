@@ -179,19 +179,19 @@ auto advected_residual_stage(const ViscousSystem& system, const Field<float>& e,
   const Diffusion<Real> diffusion(system);
   const UpwindAdvection<Real> upwind = system.upwind<Real>();
   const WallRows &fixed = system.fixed_rows, &moving = system.moving_rows;
-  return Stage(
-      system.rows, Accumulate<is_first>{layout, e.data(), residual.data(), correction.data(), diffusion},
-      AddUpwind<Real>{upwind, e.data(), residual.data(), -1},
-      at_walls(fixed, WallCorrection{fixed, residual, e, diffusion}),
-      at_walls(moving, WallCorrection{moving, residual, e, diffusion}),
-      at_walls(fixed, AddWallUpwind<Real>{fixed, upwind, e, residual, -1}),
-      at_walls(moving, AddWallUpwind<Real>{moving, upwind, e, residual, -1}),
-      OnRows<GhostRounding<AdvectiveWeight>>{{layout,
-                                              GhostRules(layout, system.sides, system.component),
-                                              e.data(),
-                                              residual.data(),
-                                              {{diffusion.x, diffusion.y, diffusion.z}, upwind}}},
-      FluidResidual{layout, system.open.data(), residual.data()});
+  return Stage(system.rows,
+               Accumulate<is_first>{layout, e.data(), residual.data(), correction.data(), diffusion},
+               AddUpwind<Real>{upwind, e.data(), residual.data(), -1},
+               at_walls(fixed, WallCorrection{fixed, residual, e, diffusion}),
+               at_walls(moving, WallCorrection{moving, residual, e, diffusion}),
+               at_walls(fixed, AddWallUpwind<Real>{fixed, upwind, e, residual, -1}),
+               at_walls(moving, AddWallUpwind<Real>{moving, upwind, e, residual, -1}),
+               OnRows<GhostRounding<AdvectiveWeight>>{{layout,
+                                                       GhostRules(layout, system.sides, system.component),
+                                                       e.data(),
+                                                       residual.data(),
+                                                       {{diffusion.x, diffusion.y, diffusion.z}, upwind}}},
+               FluidResidual{layout, system.open.data(), residual.data()});
 }
 
 Spectrum bound_spectrum(const ViscousSystem& system) {

@@ -294,6 +294,34 @@ def test_a_large_courant_number_warns():
         solver.step()
 
 
+def test_implicit_advection_has_no_courant_limit_but_that_of_scalars():
+    solver = closed_box(mu=0.05, dt=0.01)
+    solver.set_domain_bc("+y", "wall", [1, 0, 0])
+    assert solver.implicit_advection is False
+    solver.set_advection(True)
+    solver.set_implicit_advection(True)
+    assert solver.implicit_advection is True
+    assert "implicit sou" in repr(solver)
+    for target, met in ((None, 4.0), (9.0, 9.0)):
+        for _ in range(20):
+            solver.step_adaptive(target) if target else solver.step_adaptive()
+        assert solver.courant_number == pytest.approx(met, rel=0.1)
+    solver.add_scalar("c", 0.1)
+    with pytest.warns(RuntimeWarning, match="Courant"):
+        solver.step()
+    solver.set_implicit_advection(False)
+    with pytest.warns(RuntimeWarning, match="Courant"):
+        solver.step()
+
+
+@pytest.mark.parametrize("value", ["yes", 2, None, np.nan])
+def test_implicit_advection_is_a_flag(value):
+    solver = closed_box()
+    with pytest.raises((TypeError, ValueError), match="on"):
+        solver.set_implicit_advection(value)
+    assert solver.implicit_advection is False
+
+
 @pytest.mark.parametrize("dt", [1.0, 100.0])
 @pytest.mark.parametrize("kind", ["slip", "wall"])
 def test_creeping_flow_through_an_outflow_decays_at_any_time_step(kind, dt):

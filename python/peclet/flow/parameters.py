@@ -110,7 +110,7 @@ class Parameters(Part):
             self._core.advection_scheme = self._status.scheme
 
     def set_implicit_advection(self, on: bool) -> None:
-        """True: advection is implicit in time and stable at any Courant number; False (the default): explicit.
+        """True: advection is implicit in time, for large Courant numbers; False (the default): explicit.
 
         With v the extrapolated velocity and e its correction, div(v e), first-order upwind, joins the matrix
         of the momentum equation; the explicit flux of v keeps the chosen scheme [KhoslaRubin1974, deferred

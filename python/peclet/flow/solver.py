@@ -25,6 +25,9 @@ _LARGEST = 2**20  # cells along one axis
 _BYTES_PER_CELL = 200  # at least
 # Courant number up to which the scheme, extrapolated in time, damps the shortest waves.
 _COURANT_LIMIT = {"sou": 0.25, "koren": 0.5, "central": 0.5}
+_COURANT_LIMIT_OF_SCALARS = 0.5
+# Targets of step_adaptive: where advection is explicit, and where it is implicit.
+_COURANT_TARGET, _IMPLICIT_COURANT_TARGET = 0.4, 4.0
 
 
 class Solver(Parameters, Boundaries, Geometry, Fields, Scalars, Instruments):
@@ -169,15 +172,18 @@ class Solver(Parameters, Boundaries, Geometry, Fields, Scalars, Instruments):
                 )
 
     def step_adaptive(
-        self, cfl_target: float = 0.4, capillary_cfl: float = 0.4, dt_max: float = math.inf
+        self, cfl_target: float | None = None, capillary_cfl: float = 0.4, dt_max: float = math.inf
     ) -> float:
         """Advance by a time step chosen from the velocity, and return it.
 
-        dt becomes cfl_target (at most 0.8 of the limit of the advection scheme, see courant_number) over the
-        largest of sum |u_a| / h_a, at most dt_max and at most twice the last one. With a fluid at rest, the
-        present dt is kept if dt_max is infinite. capillary_cfl is accepted from scripts: there is no surface
-        tension here.
+        dt becomes cfl_target (at most 0.8 of the limit, see courant_number) over the largest of
+        sum |u_a| / h_a, at most dt_max and at most twice the last one. With a fluid at rest, the present dt
+        is kept if dt_max is infinite. cfl_target is 0.4 unless given, 4 with implicit advection without
+        scalars. capillary_cfl is accepted from scripts: there is no surface tension here.
         """
+        if cfl_target is None:
+            unlimited = self.implicit_advection and self._courant_limit() == math.inf
+            cfl_target = _IMPLICIT_COURANT_TARGET if unlimited else _COURANT_TARGET
         target = _checks.positive(cfl_target, "cfl_target")
         _checks.positive(capillary_cfl, "capillary_cfl")
         if dt_max != math.inf:
@@ -195,14 +201,18 @@ class Solver(Parameters, Boundaries, Geometry, Fields, Scalars, Instruments):
     def courant_number(self) -> float:
         """Largest of dt sum |u_a| / h_a over the cells, with the present velocity and dt.
 
-        Advection is explicit: step() warns where this exceeds the limit of the scheme, 0.25 for 'sou' and 0.5
-        for 'koren' and 'central'.
+        step() warns where this exceeds the limit: 0.25 for 'sou' and 0.5 for 'koren' and 'central' where
+        advection is explicit; none where it is implicit, but 0.5 for scalars, which always are explicit.
         """
         self._require_geometry()
         return self._core.courant_number
 
     def _courant_limit(self) -> float:
-        return math.inf if self.advection_scheme is None else _COURANT_LIMIT[self.advection_scheme]
+        if self.advection_scheme is None:
+            return math.inf
+        if self.implicit_advection:
+            return _COURANT_LIMIT_OF_SCALARS if self._core.scalar_names else math.inf
+        return _COURANT_LIMIT[self.advection_scheme]
 
     @property
     def time(self) -> float:
@@ -255,9 +265,10 @@ class Solver(Parameters, Boundaries, Geometry, Fields, Scalars, Instruments):
         spacing = " x ".join(f"{h:.6g}" for h in self._spacing) if self._physical_units else "1"
         count = self.num_scene_instances()
         bodies = f"{count} bod{'y' if count == 1 else 'ies'}"
+        implicit = "implicit " if self.advection_scheme and self.implicit_advection else ""
         return (
             f"<Solver: {sizes} cells of size {spacing}, rho {self.density:g}, mu {self.viscosity:g}, "
-            f"dt {self.dt:g}, advection {self.advection_scheme or 'off'}, {bodies}, "
+            f"dt {self.dt:g}, advection {implicit}{self.advection_scheme or 'off'}, {bodies}, "
             f"step {self.number_of_steps}, time {self.time:g}>"
         )
 
@@ -275,7 +286,7 @@ def _warn_cap(solve: str, cap: int, tolerance: float, report: str | None = None)
 def _warn_courant(number: float, limit: float) -> None:
     warnings.warn(
         f"step(): advection is explicit and the Courant number {number:.2g} exceeds the limit {limit:g} of "
-        "the scheme; reduce dt or use step_adaptive()",
+        "the scheme; reduce dt, use step_adaptive(), or set_implicit_advection() if there are no scalars",
         RuntimeWarning,
         stacklevel=3,
     )
