@@ -98,6 +98,20 @@ void Bodies::set_pose(int b, Vec3 translation, Quaternion rotation) {
   stale_ = true;
 }
 
+Real Bodies::displacement(int b, Vec3 translation, Quaternion rotation) {
+  const Body& body = (*this)[b];
+  const Quaternion turned = normalized(rotation);
+  const Vec3 shift = geometry().box.nearest(translation - body.pose.translation);
+  Real largest = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    Vec3 x;
+    for (int a = 0; a < 3; ++a)
+      x[a] = body.pose.scale * ((corner >> a) & 1 ? body.local_high : body.local_low)[a];
+    largest = std::max(largest, norm(shift + (rotate(turned, x) - rotate(body.pose.rotation, x))));
+  }
+  return largest;
+}
+
 void Bodies::set_twist(int b, Twist twist) {
   bodies_[static_cast<std::size_t>(b)].twist = twist;
   stale_ = true;

@@ -130,6 +130,8 @@ class Bodies {
   bool any_moves() const;
 
   void set_pose(int b, Vec3 translation, Quaternion rotation);
+  /// Largest displacement of a point of body b on the way to a pose.
+  Real displacement(int b, Vec3 translation, Quaternion rotation);
   void set_twist(int b, Twist twist);
   void pin_center(int b, Vec3 center);
   void set_dynamic(int b);

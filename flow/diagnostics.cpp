@@ -30,14 +30,14 @@ Real largest_courant_rate(const RowRanges& rows, const FaceVector<Real>& velocit
       });
 }
 
-void mask_closed_faces(const RowRanges& whole, const FaceVector<OpenFraction>& open,
+void mask_solid_points(const RowRanges& whole, const FaceVector<OpenFraction>& open,
                        const FaceVector<Real>& velocity) {
   const FaceVector<OpenFraction> o = open;
   const FaceVector<Real> u = velocity;
   for_each_cell(
-      "flow::mask_closed_faces", whole, KOKKOS_LAMBDA(int i, int j, int k) {
+      "flow::mask_solid_points", whole, KOKKOS_LAMBDA(int i, int j, int k) {
         const Index p = u.x.layout()(i, j, k);
-        for (int c = 0; c < 3; ++c) u[c][p] = o[c][p] ? u[c][p] : 0.0;
+        for (int c = 0; c < 3; ++c) u[c][p] = is_fluid(o[c][p]) ? u[c][p] : 0.0;
       });
 }
 
@@ -48,7 +48,7 @@ Real sum_of_change(const RowRanges& rows, const Field<OpenFraction>& open, const
   return sum_cells(
       "flow::sum_of_change", rows, KOKKOS_LAMBDA(int i, int j, int k) {
         const Index p = u.layout()(i, j, k);
-        return o[p] ? u[p] - old[p] : 0.0;
+        return is_fluid(o[p]) ? u[p] - old[p] : 0.0;
       });
 }
 
@@ -76,13 +76,11 @@ Real body_volume(const BodyGeometry& geometry, const Grid& grid, int b, const Bo
                                   });
 }
 
-Real count_open_faces(const RowRanges& rows, const Field<OpenFraction>& open) {
+Real count_fluid_points(const RowRanges& rows, const Field<OpenFraction>& open) {
   const Field<OpenFraction> o = open;
   return sum_cells(
-      "flow::count_open_faces", rows, KOKKOS_LAMBDA(int i, int j, int k) {
-        const OpenFraction fraction = o(i, j, k);
-        return static_cast<Real>(fraction < 1 ? fraction : 1);
-      });
+      "flow::count_fluid_points", rows,
+      KOKKOS_LAMBDA(int i, int j, int k) { return static_cast<Real>(is_fluid(o(i, j, k))); });
 }
 
 }  // namespace peclet::flow

@@ -12,11 +12,11 @@ Real largest_component(const RowRanges& rows, const FaceVector<Real>& velocity);
 /// Largest over the cells of sum_a |u_a| / h_a, the larger of both faces along each axis.
 Real largest_courant_rate(const RowRanges& rows, const FaceVector<Real>& velocity, const Real3& spacing);
 
-/// velocity = 0 on closed faces.
-void mask_closed_faces(const RowRanges& whole, const FaceVector<OpenFraction>& open,
+/// velocity = 0 at solid points.
+void mask_solid_points(const RowRanges& whole, const FaceVector<OpenFraction>& open,
                        const FaceVector<Real>& velocity);
 
-/// Sum of u - u_old over the open faces of one component.
+/// Sum of u - u_old over the fluid points of one component.
 Real sum_of_change(const RowRanges& rows, const Field<OpenFraction>& open, const Field<Real>& velocity,
                    const Field<Real>& previous);
 
@@ -28,6 +28,6 @@ Real divergence_in_open_cells(const RowRanges& rows, const FaceVector<OpenFracti
 Real body_volume(const BodyGeometry& geometry, const Grid& grid, int b, const Box& region);
 
 /// Number of fluid points of one component.
-Real count_open_faces(const RowRanges& rows, const Field<OpenFraction>& open);
+Real count_fluid_points(const RowRanges& rows, const Field<OpenFraction>& open);
 
 }  // namespace peclet::flow

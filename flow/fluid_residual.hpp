@@ -16,8 +16,7 @@ struct FluidResidual {
   struct Row {
     const OpenFraction* open;
     const Real* residual;
-    /// A product and no choice: selecting doubles by 16-bit integers vectorises badly.
-    KOKKOS_INLINE_FUNCTION Real operator()(int i) const { return (open[i] < 1 ? open[i] : 1) * residual[i]; }
+    KOKKOS_INLINE_FUNCTION Real operator()(int i) const { return is_fluid(open[i]) * residual[i]; }
   };
   KOKKOS_INLINE_FUNCTION Row row(int j, int k) const {
     const Index n = layout(0, j, k);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace peclet::flow {
 namespace {
@@ -53,20 +54,28 @@ void sample_region_cells(const SolidSampler& solid, const Field<Real>& fixed_sdf
 }
 
 /// Fraction of the low face of cell (i, j, k) along axis. The face is fluid where the mean distance of its
-/// two cells is not negative; a fluid face is never quite closed, so that fluid and open mean the same.
+/// two cells is not negative, and then never quite closed; else it is closed, or a slit of a moving body.
+/// viscous_area = nu dt.
 KOKKOS_INLINE_FUNCTION OpenFraction open_fraction_at(const SolidSampler& solid, int axis, int i, int j, int k,
-                                                     Real half_diagonal) {
+                                                     Real half_diagonal, Real viscous_area) {
   const Index p = solid.sdf.layout()(i, j, k);
   const Index q = p - solid.sdf.layout().stride(axis);
   const Real low = solid.sdf[q], high = solid.sdf[p];
-  if (0.5 * (low + high) < 0) return 0;
+  const bool is_solid = 0.5 * (low + high) < 0;
   if (low > half_diagonal || high > half_diagonal) return fully_open;
-  // what two surfaces squeeze out of a narrow gap could not pass through the slits that the geometry leaves
-  if (narrow_gap(solid, axis, i, j, k).share > 0) return fully_open;
+  if (low < -half_diagonal || high < -half_diagonal) return 0;
+  // what two surfaces squeeze out of a narrow gap could not pass through what the geometry leaves open
+  if (narrow_gap(solid, axis, i, j, k).share > 0) return is_solid ? OpenFraction(0) : fully_open;
   const Real open = face_opening(solid, axis, i, j, k, solid.owner[q], solid.owner[p]).open;
-  const Real quantised = Kokkos::round(open * fully_open);
-  if (quantised < smallest_open_fraction) return smallest_open_fraction;
-  return quantised > fully_open ? fully_open : static_cast<OpenFraction>(quantised);
+  if (is_solid) {
+    const int owner = nearest_owner(solid, axis, p, solid.grid.face_center(axis, i, j, k));
+    if (open == 0 || owner < 0 || !solid.geometry.bodies(owner).dynamic) return 0;
+    const Real friction = slit_friction(open, slit_diffusion(solid.grid, axis, viscous_area));
+    const auto slit = static_cast<OpenFraction>(open / (1 + friction) * fully_open);
+    return slit < smallest_slit ? OpenFraction(0) : OpenFraction(slit | 1);
+  }
+  const auto quantised = static_cast<OpenFraction>(2 * Kokkos::round(0.5 * open * fully_open));
+  return quantised < smallest_open_fraction ? smallest_open_fraction : quantised;
 }
 
 Real half_diagonal_of(const Grid& grid) {
@@ -74,17 +83,19 @@ Real half_diagonal_of(const Grid& grid) {
                          grid.spacing[2] * grid.spacing[2]);
 }
 
+/// None of the bodies moves.
 void open_all_faces(const SolidSampler& solid, const FaceVector<OpenFraction>& open) {
   const SolidSampler sampler = solid;
   const FaceVector<OpenFraction> target = open;
   const Real half_diagonal = half_diagonal_of(solid.grid);
   for_each_cell(
       "flow::open_all_faces", RowRanges(solid.grid.cells), KOKKOS_LAMBDA(int i, int j, int k) {
-        for (int a = 0; a < 3; ++a) target[a](i, j, k) = open_fraction_at(sampler, a, i, j, k, half_diagonal);
+        for (int a = 0; a < 3; ++a)
+          target[a](i, j, k) = open_fraction_at(sampler, a, i, j, k, half_diagonal, 0);
       });
 }
 
-void open_region_faces(const SolidSampler& solid, const FaceVector<OpenFraction>& open,
+void open_region_faces(const SolidSampler& solid, const FaceVector<OpenFraction>& open, Real viscous_area,
                        const RegionList& regions) {
   const RegionView region = regions.view();
   const SolidSampler sampler = solid;
@@ -96,7 +107,7 @@ void open_region_faces(const SolidSampler& solid, const FaceVector<OpenFraction>
         if (!cell.unique) return;
         for (int a = 0; a < 3; ++a)
           target[a](cell.i, cell.j, cell.k) =
-              open_fraction_at(sampler, a, cell.i, cell.j, cell.k, half_diagonal);
+              open_fraction_at(sampler, a, cell.i, cell.j, cell.k, half_diagonal, viscous_area);
       });
 }
 
@@ -205,7 +216,7 @@ ImmersedBoundary::ImmersedBoundary(const Grid& grid, const DomainSides& sides)
   in_region_ = Field<std::uint8_t>("flow::in_region", layout);
 }
 
-void ImmersedBoundary::build(Bodies& bodies, const Field<Real>& samples) {
+void ImmersedBoundary::build(Bodies& bodies, const Field<Real>& samples, Real viscous_area) {
   solid_.samples = samples;
   sample_fixed(bodies);
   regions_.clear();
@@ -222,7 +233,7 @@ void ImmersedBoundary::build(Bodies& bodies, const Field<Real>& samples) {
     Kokkos::deep_copy(fixed_owner_.array(), solid_.owner.array());
     for (int a = 0; a < 3; ++a) Kokkos::deep_copy(fixed_open_[a].array(), open_[a].array());
   }
-  update(bodies, Field<Real>());
+  update(bodies, Field<Real>(), viscous_area);
   changed_ = {Box{{0, 0, 0}, grid_.cells}};
 }
 
@@ -257,7 +268,8 @@ void ImmersedBoundary::sample_fixed(Bodies& bodies) {
   }
 }
 
-void ImmersedBoundary::update(Bodies& bodies, const Field<Real>& pressure) {
+void ImmersedBoundary::update(Bodies& bodies, const Field<Real>& pressure, Real viscous_area) {
+  viscous_area_ = viscous_area;
   changed_ = regions_.boxes_inside();
   if (pressure.is_allocated()) extrapolate_pressure(open_, sides_, regions_, pressure);
   restore_fixed(solid_, fixed_sdf_, fixed_owner_, open_, fixed_open_, in_region_, regions_);
@@ -284,11 +296,13 @@ void ImmersedBoundary::sample_moving(const RegionList& regions) {
   sample_region_cells(solid_, fixed_sdf_, fixed_owner_, in_region_, regions);
   fill_mirrored_ghosts(solid_.sdf, sides_, 1);
   fill_mirrored_ghosts(solid_.owner, sides_, 1);
-  open_region_faces(solid_, open_, regions);
+  open_region_faces(solid_, open_, viscous_area_, regions);
   fill_open_ghosts(open_, solid_.sdf, sides_);
   for (int c = 0; c < 3; ++c) {
     mark_superseded(in_region_, fixed_rows_[c]);
     build_wall_rows(c, solid_, open_, sides_, regions, scratch_, moving_rows_[c]);
+    std::swap(former_slits_[c], slits_[c]);
+    build_slits(c, solid_, open_, viscous_area_, regions, scratch_, slits_[c]);
     build_body_faces(c, solid_, open_, sides_, regions, scratch_, body_faces_[c]);
   }
   build_cut_cells(open_, regions, scratch_, cut_cells_);
@@ -299,7 +313,7 @@ std::size_t ImmersedBoundary::bytes() const {
   Index total = cells * static_cast<Index>(3 * sizeof(OpenFraction) + sizeof(Real) + sizeof(int) + 1);
   if (fixed_sdf_.is_allocated())
     total += cells * static_cast<Index>(3 * sizeof(OpenFraction) + sizeof(Real) + sizeof(int));
-  for (int c = 0; c < 3; ++c) total += fixed_rows_[c].bytes() + moving_rows_[c].bytes();
+  for (int c = 0; c < 3; ++c) total += fixed_rows_[c].bytes() + moving_rows_[c].bytes() + slits_[c].bytes();
   return static_cast<std::size_t>(total);
 }
 
@@ -307,6 +321,7 @@ void ImmersedBoundary::refresh_velocity(Bodies& bodies) {
   solid_.geometry = bodies.geometry();
   for (int c = 0; c < 3; ++c) {
     refresh_wall_velocity(c, solid_, moving_rows_[c]);
+    refresh_slits(c, solid_, slits_[c]);
     refresh_body_faces(c, solid_, body_faces_[c]);
   }
   refresh_cut_cells(solid_, open_, sides_, cut_cells_);

@@ -6,6 +6,7 @@
 #include "flow/domain_sides.hpp"
 #include "flow/moving_walls.hpp"
 #include "flow/region_list.hpp"
+#include "flow/slits.hpp"
 #include "flow/solid_sampler.hpp"
 #include "flow/wall_rows.hpp"
 
@@ -16,16 +17,20 @@ class ImmersedBoundary {
   ImmersedBoundary(const Grid& grid, const DomainSides& sides);
 
   /// Sample everything: fixed bodies and, if allocated, the solid given as distances at cell centres.
-  void build(Bodies& bodies, const Field<Real>& samples);
+  /// viscous_area: nu dt, see flow/slits.hpp.
+  void build(Bodies& bodies, const Field<Real>& samples, Real viscous_area);
   /// Re-sample the moving bodies. Before the geometry changes, the pressure of closed cells beside open ones
   /// is extrapolated into them, so that freshly uncovered cells start from it.
-  void update(Bodies& bodies, const Field<Real>& pressure);
+  void update(Bodies& bodies, const Field<Real>& pressure, Real viscous_area);
   /// Only the velocities of the bodies changed.
   void refresh_velocity(Bodies& bodies);
 
   const FaceVector<OpenFraction>& open() const { return open_; }
   const WallRows& fixed_rows(int c) const { return fixed_rows_[c]; }
   const WallRows& moving_rows(int c) const { return moving_rows_[c]; }
+  const Slits& slits(int c) const { return slits_[c]; }
+  /// Slits before the last update.
+  const Slits& former_slits(int c) const { return former_slits_[c]; }
   const BodyFaces& body_faces(int c) const { return body_faces_[c]; }
   const CutCells& cut_cells() const { return cut_cells_; }
   const SolidSampler& solid() const { return solid_; }
@@ -33,6 +38,8 @@ class ImmersedBoundary {
   const RowRanges& rows() const { return rows_; }
   /// Cells whose faces changed in the last update.
   const std::vector<Box>& changed() const { return changed_; }
+  bool has_slits() const { return slits_[0].count + slits_[1].count + slits_[2].count > 0; }
+  Real viscous_area() const { return viscous_area_; }
   std::size_t bytes() const;
 
  private:
@@ -50,7 +57,9 @@ class ImmersedBoundary {
   RegionList regions_;
   std::vector<Box> changed_;
   Array<Index> scratch_;
+  Real viscous_area_ = 0;
   WallRows fixed_rows_[3], moving_rows_[3];
+  Slits slits_[3], former_slits_[3];
   BodyFaces body_faces_[3];
   CutCells cut_cells_;
 };

@@ -31,23 +31,25 @@ KOKKOS_INLINE_FUNCTION bool is_cut(const FaceVector<OpenFraction>& open, Index n
   return any_open && any_closed;
 }
 
-/// Integral of the wall velocity over the closed part of the low face of cell (i, j, k) along axis, per
-/// face area. A face whose centre is solid counts as closed.
+/// What the wall adds to o u on the low face of cell (i, j, k) along axis, per face area: the integral of the
+/// wall velocity over the whole face less o times its value in the middle of the open part.
 KOKKOS_INLINE_FUNCTION Real swept_flux(const SolidSampler& solid, const FaceVector<OpenFraction>& open,
                                        int axis, int i, int j, int k) {
   const Index p = open.x.layout()(i, j, k);
   const OpenFraction fraction = open[axis][p];
   if (fraction == fully_open) return 0;
-  Vec3 x = solid.grid.face_center(axis, i, j, k);
+  const Vec3 x = solid.grid.face_center(axis, i, j, k);
   const int body = nearest_owner(solid, axis, p, x);
   const NarrowGap gap = narrow_gap(solid, axis, i, j, k);
-  if (fraction > 0) {
-    const FaceOpening face = face_opening(solid, axis, i, j, k, body, body);
-    const int s = (axis + 1) % 3, t = (axis + 2) % 3;
-    x[s] += face.closed_s * solid.grid.spacing[s];
-    x[t] += face.closed_t * solid.grid.spacing[t];
-  }
-  return (1 - fraction * open_fraction_unit) * wall_velocity(solid, gap, body, axis, x);
+  const Real whole = wall_velocity(solid, gap, body, axis, x);
+  if (fraction == 0) return whole;
+  const FaceOpening face = face_opening(solid, axis, i, j, k, body, body);
+  const int s = (axis + 1) % 3, t = (axis + 2) % 3;
+  const Real lever = face.open > 0 ? -(1 - face.open) / face.open : 0.0;  // of the open part's middle
+  Vec3 middle = x;
+  middle[s] += lever * face.closed_s * solid.grid.spacing[s];
+  middle[t] += lever * face.closed_t * solid.grid.spacing[t];
+  return whole - fraction * open_fraction_unit * wall_velocity(solid, gap, body, axis, middle);
 }
 
 }  // namespace

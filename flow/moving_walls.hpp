@@ -8,7 +8,8 @@
 
 namespace peclet::flow {
 
-/// Closed faces of one component inside moving regions; they carry the velocity of their body.
+/// Closed faces (slits are not) of one component inside moving regions; they carry the velocity of their
+/// body.
 struct BodyFaces {
   Index count = 0;
   Array<Index> face;

@@ -8,9 +8,16 @@ namespace peclet::flow {
 
 /// Open (fluid) part of a face, in units of 1/32768: 0 closed, 32768 fully open. The operator is defined by
 /// these integers, so that its meaning does not depend on where or how often they are read.
+/// An odd number marks a slit: open in part although the centre of the face is solid (flow/slits.hpp).
 using OpenFraction = std::uint16_t;
 inline constexpr OpenFraction fully_open = 32768;
 inline constexpr Real open_fraction_unit = 1.0 / 32768;
+
+/// 1 where the centre of a face is fluid: a point with a momentum equation. Arithmetic and no choice, because
+/// selecting by 16-bit integers vectorises badly.
+KOKKOS_INLINE_FUNCTION int is_fluid(OpenFraction open) { return (open < 1 ? open : 1) & ~open; }
+
+KOKKOS_INLINE_FUNCTION bool is_slit(OpenFraction open) { return open & 1; }
 
 /// What lies beyond a side of the box, for the pressure.
 enum class PressureSide {

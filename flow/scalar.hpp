@@ -71,8 +71,8 @@ struct ScalarSettings {
 /// What a cell is to a scalar.
 namespace cell_state {
 inline constexpr OpenFraction solid = 0;  // no unknown
-inline constexpr OpenFraction whole = 1;  // its centre is fluid; walls of given value are at their distance
-inline constexpr OpenFraction cut = 2;    // the fluid part of a cell beside a wall of given flux
+inline constexpr OpenFraction whole = 2;  // its centre is fluid; walls of given value are at their distance
+inline constexpr OpenFraction cut = 4;    // the fluid part of a cell beside a wall of given flux
 }  // namespace cell_state
 
 /// Who gives to the fluid: bodies from 0, sampled_solid, or a side of the box.

@@ -9,6 +9,8 @@ namespace peclet::flow {
 
 /// Smallest open fraction of a face whose centre is fluid: a fluid face is never closed.
 inline constexpr OpenFraction smallest_open_fraction = fully_open / 4;
+/// Smallest open fraction of a slit; faces that are open less are closed.
+inline constexpr OpenFraction smallest_slit = fully_open / 64;
 
 /// Distance to the bodies that own the two cells beside a face, callable in kernels.
 struct SolidSampler {

@@ -70,6 +70,7 @@ Real Solver::extrapolation_share() const {
 }
 
 void Solver::step() {
+  if (boundary_.has_slits() && boundary_.viscous_area() != viscous_area()) geometry_stale_ = true;
   bring_geometry_up_to_date();
   if (wall_velocity_stale_) refresh_wall_velocity();
   const double geometry_time = times_.geometry;
@@ -81,7 +82,7 @@ void Solver::step() {
   MomentumTerms terms = momentum_terms();
   const Real velocity_scale = extrapolate_velocity(velocity_plan_, velocity_rows_, velocity_, previous_,
                                                    terms.step_ratio, extrapolated_);
-  for (int c = 0; c < 3; ++c) impose_body_velocity(boundary_.body_faces(c), extrapolated_[c]);
+  impose_walls(extrapolated_);
   courant_number_bound_ =
       velocity_scale * terms.time_step * (1 / grid_.spacing[0] + 1 / grid_.spacing[1] + 1 / grid_.spacing[2]);
   // viscosity that reaches further than a cell in a step keeps backflow in check by itself
@@ -153,7 +154,9 @@ void Solver::predict_velocity(const MomentumTerms& terms, Real velocity_scale) {
       const Stopwatch watch(times_.momentum);
       compute_momentum_residual(c, terms, velocity_plan_[c], velocity_rows_[c], fixed_rows, moving_rows,
                                 residual_);
+      compute_slit_residual(c, terms, boundary_.slits(c), residual_);
       if (scalars_.has_buoyancy()) scalars_.add_buoyancy(c, terms.time_step, velocity_rows_[c], residual_);
+      predict_slits(boundary_.slits(c), velocity_[c], residual_);
     }
     Real left_over = 0;
     {
@@ -177,7 +180,10 @@ void Solver::predict_velocity(const MomentumTerms& terms, Real velocity_scale) {
 }
 
 void Solver::project_velocity(Real velocity_scale, Real implicit_weight) {
-  for (int c = 0; c < 3; ++c) impose_body_velocity(boundary_.body_faces(c), velocity_[c]);
+  for (int c = 0; c < 3; ++c) {
+    impose_body_velocity(boundary_.body_faces(c), velocity_[c]);
+    impose_predicted_velocity(boundary_.slits(c), velocity_[c]);
+  }
   fill_velocity(velocity_, 1);
   require_balanced_inflow(velocity_scale);
   const Real largest =

@@ -92,7 +92,8 @@ class Solver {
   /// Not less than courant_number() was before the last step.
   Real courant_number_bound() const { return courant_number_bound_; }
   Real largest_velocity() const;
-  /// Density / dt times the velocity change in the last step, summed over fluid faces, times the cell volume.
+  /// Density / dt times the velocity change in the last step, summed over the fluid points, times the cell
+  /// volume.
   Vec3 momentum_change() const;
   /// Number of fluid points of velocity component c.
   Real fluid_points(int c) const { return fluid_points_[c]; }
@@ -124,11 +125,17 @@ class Solver {
   void return_advective_leak(MomentumTerms& terms);
   void predict_velocity(const MomentumTerms& terms, Real velocity_scale);
   void project_velocity(Real velocity_scale, Real implicit_weight);
+  /// Closed faces in the state move with their body.
   void impose_body_motion();
+  /// nu dt, on which the slits depend.
+  Real viscous_area() const;
+  /// All faces whose centre is solid move with their body.
+  void impose_walls(const FaceVector<Real>& velocity) const;
   void take_requested_sides();
   void bring_geometry_up_to_date();
   void require_balanced_inflow(Real velocity_scale) const;
   void fill_velocity(const FaceVector<Real>& velocity, int width, bool stops_backflow = false) const;
+  std::vector<int> bodies_that_leap();
   void take_requested_poses();
   void promote_moved_bodies();
   void geometry_rebuilt();

@@ -22,7 +22,7 @@ void Solver::build_geometry(bool keep_flow) {
   take_requested_sides();
   take_requested_poses();
   if (samples_.is_allocated()) fill_mirrored_ghosts(samples_, sides_);
-  boundary_.build(bodies_, samples_);
+  boundary_.build(bodies_, samples_, viscous_area());
   geometry_rebuilt();
   if (!keep_flow) {
     for (int c = 0; c < 3; ++c) velocity_[c].fill(0);
@@ -34,6 +34,21 @@ void Solver::build_geometry(bool keep_flow) {
   geometry_stale_ = false;
   wall_velocity_stale_ = false;
   velocity_changed();
+}
+
+Real Solver::viscous_area() const { return settings_.viscosity / settings_.density * settings_.time_step; }
+
+/// Bodies about to move so far at once that the flow in their slits says nothing about what they uncover.
+std::vector<int> Solver::bodies_that_leap() {
+  constexpr Real leap = 0.5;  // spacings
+  std::vector<int> result;
+  for (int b = 0; b < bodies_.count(); ++b) {
+    const auto& pose = requested_poses_[static_cast<std::size_t>(b)];
+    if (pose &&
+        !(bodies_.displacement(b, pose->translation, pose->rotation) <= leap * grid_.smallest_spacing()))
+      result.push_back(b);
+  }
+  return result;
 }
 
 void Solver::take_requested_poses() {
@@ -57,23 +72,32 @@ void Solver::geometry_rebuilt() {
 }
 
 void Solver::count_fluid_points() {
-  for (int c = 0; c < 3; ++c) fluid_points_[c] = count_open_faces(velocity_rows_[c], boundary_.open()[c]);
+  for (int c = 0; c < 3; ++c)
+    fluid_points_[c] = peclet::flow::count_fluid_points(velocity_rows_[c], boundary_.open()[c]);
 }
 
 void Solver::velocity_changed() {
   if (!built_) return;
-  mask_closed_faces(RowRanges(grid_.cells), boundary_.open(), velocity_);
+  mask_solid_points(RowRanges(grid_.cells), boundary_.open(), velocity_);
   fill_outflow_points(velocity_, sides_);
+  fill_velocity(velocity_, 1);
+  impose_walls(velocity_);
   fill_velocity(velocity_, 1);
   for (int c = 0; c < 3; ++c) Kokkos::deep_copy(previous_[c].array(), velocity_[c].array());
   previous_time_step_ = 0;
-  impose_body_motion();
 }
 
 void Solver::impose_body_motion() {
   for (int c = 0; c < 3; ++c) {
     impose_body_velocity(boundary_.body_faces(c), velocity_[c]);
     impose_body_velocity(boundary_.body_faces(c), previous_[c]);
+  }
+}
+
+void Solver::impose_walls(const FaceVector<Real>& velocity) const {
+  for (int c = 0; c < 3; ++c) {
+    impose_body_velocity(boundary_.body_faces(c), velocity[c]);
+    impose_wall_velocity(boundary_.slits(c), velocity[c]);
   }
 }
 
@@ -168,7 +192,7 @@ void Solver::promote_moved_bodies() {
     promoted = true;
   }
   if (!promoted || !built_) return;
-  boundary_.build(bodies_, samples_);
+  boundary_.build(bodies_, samples_, viscous_area());
   geometry_rebuilt();
 }
 
@@ -181,11 +205,16 @@ void Solver::update_geometry() {
   // faces about to be uncovered take the velocity of the body that covers them
   boundary_.refresh_velocity(bodies_);
   impose_body_motion();
+  const std::vector<int> leaping = bodies_that_leap();
   take_requested_poses();
-  boundary_.update(bodies_, pressure_);
+  boundary_.update(bodies_, pressure_, viscous_area());
   pressure_solver_.update_open_fractions(boundary_.changed());
   if (!boundary_.changed().empty()) scalars_.geometry_changed();
   count_fluid_points();
+  for (const int b : leaping)
+    for (int c = 0; c < 3; ++c)
+      for (const Field<Real>& u : {velocity_[c], previous_[c]})
+        impose_wall_velocity_where_uncovered(boundary_.former_slits(c), b, boundary_.open()[c], u);
   impose_body_motion();
   geometry_stale_ = false;
   wall_velocity_stale_ = false;

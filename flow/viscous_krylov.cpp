@@ -61,21 +61,21 @@ void fill_regular_rows(const ViscousSystem& system, Real volume, Real share,
       "flow::viscous_links", cells, KOKKOS_LAMBDA(int i, int j, int k) {
         const int at[3] = {i, j, k};
         const Index p = layout(i, j, k);
-        const bool is_fluid = open[p] != 0;
+        const bool in_fluid = is_fluid(open[p]);
         Real sum = volume;
         for (int a = 0; a < 3; ++a) {
           const Index step = layout.stride(a);
           const int n = layout.cells[a];
           const bool at_low = at[a] == 0, at_high = at[a] == n - 1, beyond = at[a] == n;
           const bool closed = !exchange.is_periodic[a] && (at_low || beyond);
-          target[a][p] = is_fluid && open[p - step] != 0 && !closed ? link : OpenFraction(0);
+          target[a][p] = in_fluid && is_fluid(open[p - step]) && !closed ? link : OpenFraction(0);
           for (int high = 0; high < 2; ++high) {
             // beside a side of the box: tangential points at both ends, normal ones next to the points on it
             const bool is_end = high ? at_high : at[a] == (a == c ? 1 : 0);
             if (!exchange.is_periodic[a] && is_end) sum += share * along[a] * exchange.at[a][high];
           }
         }
-        total[p] = is_fluid ? static_cast<float>(sum) : 0.0F;
+        total[p] = in_fluid ? static_cast<float>(sum) : 0.0F;
       });
 }
 
@@ -184,12 +184,12 @@ void add_upwind_exchange(const ViscousSystem& system, Real largest, const FaceVe
       "flow::add_upwind_exchange", Box{{0, 0, 0}, layout.cells}, KOKKOS_LAMBDA(int i, int j, int k) {
         const int at[3] = {i, j, k};
         const Index p = layout(i, j, k);
-        if (exchange.open[p] == 0) return;
+        if (!is_fluid(exchange.open[p])) return;
         Real sum = 0;
         for (int a = 0; a < 3; ++a) {
           const Index step = layout.stride(a);
           const bool closed = !exchange.exchange.is_periodic[a] && at[a] == 0;
-          if (exchange.open[p - step] != 0 && !closed) {
+          if (is_fluid(exchange.open[p - step]) && !closed) {
             const Real more = fully_open * exchange.across(a, p) / exchange.unit[a];
             const Real link = Real(target[a][p]) + more;
             target[a][p] = static_cast<OpenFraction>(link < fully_open ? link : Real(fully_open));
@@ -198,8 +198,8 @@ void add_upwind_exchange(const ViscousSystem& system, Real largest, const FaceVe
             const Index face = high ? p + step : p;
             const bool at_side =
                 !exchange.exchange.is_periodic[a] && a != c && at[a] == (high ? layout.cells[a] - 1 : 0);
-            const bool is_zero =
-                at_side ? exchange.exchange.at[a][high] > 0 : exchange.open[high ? face : p - step] == 0;
+            const bool is_zero = at_side ? exchange.exchange.at[a][high] > 0
+                                         : !is_fluid(exchange.open[high ? face : p - step]);
             if (is_zero) sum += along[a] * exchange.across(a, face) / exchange.unit[a];
           }
         }

@@ -5,7 +5,7 @@
 namespace peclet::flow {
 
 KOKKOS_INLINE_FUNCTION float in_fluid(OpenFraction open, float value) {
-  return static_cast<float>(open < 1 ? open : 1) * value;
+  return static_cast<float>(is_fluid(open)) * value;
 }
 
 /// r = shadow = scale residual, e = product = search = 0.

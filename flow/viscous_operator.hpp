@@ -17,7 +17,7 @@ struct ViscousSystem {
   Real diffusion = 0;               // theta dt nu
   const SweepPlan* plan = nullptr;  // wraps along periodic axes
   RowRanges rows;                   // beginning on whole vectors
-  Field<OpenFraction> open;         // 0: row of a solid point, left out of norms
+  Field<OpenFraction> open;         // rows of solid points are left out of norms
   WallRows fixed_rows, moving_rows;
   FaceVector<Real> carrier{};  // v, where advection is implicit
   Real advection_step = 0;     // dt; 0: no advection

@@ -35,7 +35,7 @@ KOKKOS_INLINE_FUNCTION void fill_row(const WallRows& rows, Index row, int c, con
       const Index q = p + (s ? layout.stride(a) : -layout.stride(a));
       distance[s] = 1;
       rows.owner(row, d) = nearest;
-      if (open[c][q] != 0) continue;
+      if (is_fluid(open[c][q])) continue;
       const bool on_side = a == c && sides.is_side(a, at[a] + (s ? 1 : -1), layout.cells);
       if (on_side && solid.sdf[s ? p : q] >= 0) continue;
       walls |= 1 << d;
@@ -85,7 +85,7 @@ void build_wall_rows(int c, const SolidSampler& solid, const FaceVector<OpenFrac
       "flow::build_wall_rows.count", regions.number_of_cells(), scratch, KOKKOS_LAMBDA(Index n) {
         const RegionCell cell = region.cell(n);
         const Index p = layout(cell.i, cell.j, cell.k);
-        return cell.unique && fraction[c][p] != 0 &&
+        return cell.unique && is_fluid(fraction[c][p]) &&
                touches_wall(fraction, sampler.sdf, box, c, cell.i, cell.j, cell.k);
       });
   rows.reserve(rows.count);

@@ -75,7 +75,7 @@ KOKKOS_INLINE_FUNCTION bool touches_wall(const FaceVector<OpenFraction>& open, c
       touched = touched || (low_side ? sdf[p - step] < 0 : open[c][p - step] < fully_open) ||
                 (high_side ? sdf[p] < 0 : open[c][p + step] < fully_open);
     } else {
-      touched = touched || open[c][p - step] == 0 || open[c][p + step] == 0;
+      touched = touched || !is_fluid(open[c][p - step]) || !is_fluid(open[c][p + step]);
       touched = touched || (!low_side && (open[a][p] < fully_open || open[a][p - own] < fully_open)) ||
                 (!high_side && (open[a][p + step] < fully_open || open[a][p + step - own] < fully_open));
     }

@@ -82,8 +82,9 @@ const Field<Real>& component(const Solver& solver, int c) {
   return solver.velocity()[c];
 }
 
-/// Zero inside solid, where the solver keeps the velocity of the body.
-nb::object velocity(const Solver& solver, int c) {
+/// Zero at solid points, where the solver keeps the velocity of the body; with_slits: those that carry mass
+/// are shown.
+nb::object velocity(const Solver& solver, int c, bool with_slits) {
   const Int3 n = solver.grid().cells;
   Output<double> result({n[0], n[1], n[2]}, python::Order::Fortran);
   std::vector<OpenFraction> open(result.size());
@@ -94,7 +95,7 @@ nb::object velocity(const Solver& solver, int c) {
     return !solver.requested_sides().is_periodic(c) && i / steps[c] % static_cast<std::size_t>(n[c]) == 0;
   };
   for (std::size_t i = 0; i < open.size(); ++i)
-    if (open[i] == 0 && !is_on_side(i)) result[i] = 0;
+    if (!is_fluid(open[i]) && !(with_slits && is_slit(open[i])) && !is_on_side(i)) result[i] = 0;
   return result.release();
 }
 
@@ -312,7 +313,7 @@ void define_results(nb::class_<Solver>& solver) {
       .def("loads", &loads)
       .def("pressure_force", [](const Solver& s) { return load_share(s, &BodyLoad::pressure_force); })
       .def("viscous_force", [](const Solver& s) { return load_share(s, &BodyLoad::viscous_force); })
-      .def("velocity", &velocity, "c"_a)
+      .def("velocity", &velocity, "c"_a, "with_slits"_a)
       .def(
           "assign_velocity",
           [](Solver& s, nb::handle u, nb::handle v, nb::handle w) {
@@ -336,6 +337,10 @@ void define_results(nb::class_<Solver>& solver) {
            })
       .def("largest_open_divergence", &Solver::largest_open_divergence)
       .def("largest_velocity", &Solver::largest_velocity)
+      .def("fluid_points",
+           [](const Solver& s) {
+             return nb::make_tuple(s.fluid_points(0), s.fluid_points(1), s.fluid_points(2));
+           })
       .def("momentum_change",
            [](const Solver& s) {
              const Vec3 change = s.momentum_change();

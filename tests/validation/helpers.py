@@ -3,7 +3,7 @@
 import numpy as np
 from peclet import flow
 
-from tests.python.flow_scenes import spheres
+from tests.python.flow_scenes import face_is_fluid, spheres
 
 
 def box_of_fluid(cells, *, rho=1.0, mu=1.0, dt=1.0, force=(0, 0, 0), scheme=None):
@@ -33,7 +33,8 @@ def velocities(solver):
 
 def fluid_points(solver):
     """Where a velocity component is an unknown."""
-    return np.array([solver.get_ox(), solver.get_oy(), solver.get_oz()]) > 0
+    sdf = solver.get_field("sdf")
+    return np.array([face_is_fluid(sdf, axis) for axis in range(3)])
 
 
 def stream(solver, velocity):

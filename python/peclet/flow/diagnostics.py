@@ -97,8 +97,9 @@ class Instruments(ScalarInstruments):
         return self._core.body_center_pinned(self._instance(i, "i"))
 
     def fluid_momentum_cells(self) -> list[int]:
-        """Number of fluid faces of each velocity component."""
-        return [int(np.count_nonzero(self._open_fraction(c))) for c in range(3)]
+        """Number of fluid faces of each velocity component: those whose centre is fluid."""
+        self._require_geometry()
+        return [int(count) for count in self._core.fluid_points()]
 
     def reaction_budget_terms(self) -> NDArray[np.float64]:
         """Terms of the force budget of the last step, shape (2, 3).

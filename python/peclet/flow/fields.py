@@ -34,8 +34,20 @@ class Fields(Part):
         """Velocity along z on the low z faces."""
         return self._velocity(2)
 
-    # The projected velocity of the faces is the velocity on this grid.
-    get_uf, get_vf, get_wf = get_u, get_v, get_w
+    def get_uf(self) -> Array:
+        """Velocity through the open part of the low x faces: times get_ox(), the flux per area.
+
+        Differs from get_u() where a face is open in part although its centre is solid: get_u() is zero there.
+        """
+        return self._carrying_velocity(0)
+
+    def get_vf(self) -> Array:
+        """Velocity through the open part of the low y faces, see get_uf()."""
+        return self._carrying_velocity(1)
+
+    def get_wf(self) -> Array:
+        """Velocity through the open part of the low z faces, see get_uf()."""
+        return self._carrying_velocity(2)
 
     def get_p(self) -> Array:
         """Pressure at the cell centres, defined up to a constant."""
@@ -153,7 +165,11 @@ class Fields(Part):
 
     def _velocity(self, c: int) -> Array:
         self._require_geometry()
-        return self._core.velocity(c)
+        return self._core.velocity(c, with_slits=False)
+
+    def _carrying_velocity(self, c: int) -> Array:
+        self._require_geometry()
+        return self._core.velocity(c, with_slits=True)
 
     def _assign_velocity(self, u: Any = None, v: Any = None, w: Any = None) -> None:
         self._core.assign_velocity(u, v, w)

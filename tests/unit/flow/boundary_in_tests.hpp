@@ -9,9 +9,9 @@ struct BoundaryInTest {
   Bodies bodies;
   ImmersedBoundary boundary;
 
-  explicit BoundaryInTest(const std::vector<SphereInTest>& spheres)
+  explicit BoundaryInTest(const std::vector<SphereInTest>& spheres, Real viscous_area = 1e-3)
       : bodies(scene_of(spheres), grid_in_tests(), true, {}), boundary(grid_in_tests(), {}) {
-    boundary.build(bodies, {});
+    boundary.build(bodies, {}, viscous_area);
   }
 };
 
