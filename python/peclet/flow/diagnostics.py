@@ -48,8 +48,8 @@ class Instruments(ScalarInstruments):
         numpy.from_dlpack(), torch.from_dlpack() and the like take it without a copy too; on a GPU it is an
         object for their from_dlpack() alone. The memory lives as long as the view, but the next step() may
         exchange it for another: take a view anew after each. Inside solid it holds the velocity of the body,
-        or that of get_uf(). It can be written to; set_field(name, view) then tells the solver, as after any other
-        change from outside.
+        or that of get_uf(). It can be written to; set_field(name, view) then tells the solver, as after any
+        other change from outside.
 
         >>> from peclet.flow import Solver
         >>> solver = Solver(8, 6, 4)
