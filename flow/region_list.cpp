@@ -44,6 +44,15 @@ void RegionList::assign(const std::vector<Box>& boxes, const std::vector<int>& b
   upload("flow::region_body", bodies, view_.body);
   upload("flow::region_first_neighbor", first_neighbor, view_.first_neighbor);
   upload("flow::region_neighbors", neighbors, view_.neighbors);
+  if (view_.count > 1) list_cells();
+}
+
+void RegionList::list_cells() {
+  const auto total = static_cast<std::size_t>(total_);
+  if (view_.listed.extent(0) < total)
+    view_.listed = Array<RegionCell>("flow::region_cells", total + total / 4);
+  const RegionView view = view_;
+  for_each("flow::list_region_cells", total_, KOKKOS_LAMBDA(Index n) { view.listed(n) = view.find_cell(n); });
 }
 
 std::vector<Box> RegionList::boxes_inside() const {

@@ -8,7 +8,7 @@
 
 namespace peclet::flow {
 
-/// One visited cell: indices inside the domain, and unwrapped ones that give positions near the body.
+/// One visited cell: indices inside the domain.
 struct RegionCell {
   int i, j, k;
   int region;   // which box
@@ -22,6 +22,7 @@ struct RegionView {
   Array<int> body;            // per box
   Array<int> first_neighbor;  // per box, plus the total
   Array<int> neighbors;       // boxes that share cells with a box, itself included, ascending
+  Array<RegionCell> listed;   // every cell, where there are several boxes
   Int3 cells;
   int count = 0;
 
@@ -39,7 +40,9 @@ struct RegionView {
   }
 
   /// Cell n of the flattened list.
-  KOKKOS_INLINE_FUNCTION RegionCell cell(Index n) const {
+  KOKKOS_INLINE_FUNCTION RegionCell cell(Index n) const { return count > 1 ? listed(n) : find_cell(n); }
+
+  KOKKOS_INLINE_FUNCTION RegionCell find_cell(Index n) const {
     int low = 0, high = count - 1;
     while (low < high) {
       const int middle = (low + high + 1) / 2;
@@ -49,13 +52,12 @@ struct RegionView {
         high = middle - 1;
     }
     const Box& box = boxes(low);
-    Index rest = n - first_cell(low);
-    const Index nx = box.extent(0), ny = box.extent(1);
+    const int place = static_cast<int>(n - first_cell(low));
+    const int nx = box.extent(0), ny = box.extent(1), row = place / nx;
     RegionCell cell;
-    cell.i = wrap(box.low[0] + static_cast<int>(rest % nx), cells[0]);
-    rest /= nx;
-    cell.j = wrap(box.low[1] + static_cast<int>(rest % ny), cells[1]);
-    cell.k = wrap(box.low[2] + static_cast<int>(rest / ny), cells[2]);
+    cell.i = wrap(box.low[0] + place - row * nx, cells[0]);
+    cell.j = wrap(box.low[1] + row % ny, cells[1]);
+    cell.k = wrap(box.low[2] + row / ny, cells[2]);
     cell.region = low;
     cell.unique = true;
     for (int m = first_neighbor(low); m < first_neighbor(low + 1) && neighbors(m) < low; ++m)
@@ -80,6 +82,8 @@ class RegionList {
   std::vector<Box> boxes_inside() const;
 
  private:
+  void list_cells();
+
   RegionView view_;
   std::vector<Box> boxes_;
   Index total_ = 0;
