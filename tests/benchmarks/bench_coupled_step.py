@@ -1,94 +1,102 @@
-"""Time of one coupled step of the drafting-kissing-tumbling script, its shares, and the reference beside it.
+"""Time of one coupled step of drafting, kissing and tumbling, its parts, and the reference beside it.
 
-python tests/benchmarks/bench_coupled_step.py [--resolution 12] [--steps 20] [--reference PYTHON]
-
-PYTHON is the interpreter of a virtual environment with the reference (peclet-flow 0.5.1, peclet-dem,
-peclet-geom); without it, our own figures are printed alone. Both run the same script, one after the other.
+Both run tests/validation/compatible_script.py, one after the other. GB/s: bytes that a part cannot avoid to
+move, every array read or written once per pass over the grid, over its time.
 """
 
 import argparse
-import importlib
 import itertools
-import json
-import os
-import pathlib
-import resource
 import statistics
-import subprocess
 import sys
 import time
-import types
 
-SCRIPT = pathlib.Path(__file__).resolve().parents[1] / "validation" / "compatible_script.py"
-CELLS = {6: 48 * 160 * 48, 8: 64 * 208 * 64, 12: 88 * 304 * 88}
-WARM_UP = 3  # steps that allocate and start threads
+import harness
+import numpy as np
+
+SCRIPT = harness.ROOT / "tests" / "validation" / "compatible_script.py"
+WARM_UP = 2  # steps that allocate and start threads
+
+# Bytes per cell, in passes: arrays are Real 8, corrections 4, open fractions 2 per face.
+MOMENTUM = 3 * 56  # three velocities, the old two of one component, pressure, residual; three components
+VISCOUS = 3 * (10 + 34)  # norm of the residual; all sweeps of a component in one pass
+PRESSURE_START = 80  # norm of the right-hand side, first and last residual
+PRESSURE_ITERATION = (
+    100  # smooth and restrict 19, prolong and smooth 22, search 18, advance 34, coarse levels 7
+)
+REST = 72 + 96 + 38 + 86  # extrapolation, correction, divergence, projection
 
 
-def provide_geom() -> None:
-    """Newer versions of the reference call peclet.core.geom peclet.geom."""
-    try:
-        importlib.import_module("peclet.core.geom")
-    except ModuleNotFoundError:
-        core = types.ModuleType("peclet.core")
-        core.geom = importlib.import_module("peclet.geom")
-        sys.modules["peclet.core"] = core
+def swept_cells(solver) -> int:
+    """Cells between the first and the last open face of every row."""
+    fluid = (np.stack([solver.get_ox(), solver.get_oy(), solver.get_oz()]) > 0).any(axis=0)
+    found = fluid.any(axis=0)
+    first, last = fluid.argmax(axis=0), fluid[::-1].argmax(axis=0)
+    return int((fluid.shape[0] - first - last)[found].sum())
 
 
-def measure(resolution: int, steps: int) -> None:
-    """Run the script in this process; print times and memory as one line of JSON."""
-    provide_geom()
+def measure(resolution: int, steps: int) -> dict:
+    """Medians over the steps."""
     sys.argv = [str(SCRIPT), str(steps + WARM_UP), str(resolution)]
-    script: dict = {"__name__": "__main__", "__file__": str(SCRIPT)}
+    script: dict = {"__name__": "__main__"}
     source = SCRIPT.read_text(encoding="utf-8").partition('if __name__ == "__main__":')[0]
     exec(compile(source, str(SCRIPT), "exec"), script)  # the definitions, with the resolution of sys.argv
-    ends, shares = [time.perf_counter()], []
+    ends, parts, iterations = [time.perf_counter()], [], []
 
     def report(step, particles, solver, force) -> None:
         ends.append(time.perf_counter())
-        shares.append(dict(solver.last_step_timers()))
+        parts.append(dict(solver.last_step_timers()))
+        iterations.append(solver.last_pressure_iterations())
 
-    script["run"](steps + WARM_UP, report)
+    solver = script["run"](steps + WARM_UP, report)["flow"]
+    peak = harness.peak_memory()
     seconds = [b - a for a, b in itertools.pairwise(ends)][WARM_UP:]
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
-    names = [name for name, value in shares[-1].items() if isinstance(value, (int, float))]
-    medians = {name: statistics.median(share[name] for share in shares[WARM_UP:]) for name in names}
-    print(json.dumps({"seconds": statistics.median(seconds), "shares": medians, "peak": peak}))
+    names = [name for name, value in parts[-1].items() if isinstance(value, (int, float))]
+    return {
+        "cells": script["NX"] * script["NY"] * script["NZ"],
+        "swept": swept_cells(solver),
+        "seconds": statistics.median(seconds),
+        "parts": {name: statistics.median(part[name] for part in parts[WARM_UP:]) for name in names},
+        "iterations": statistics.mean(iterations[WARM_UP:]),
+        "peak": peak,
+    }
 
 
-def run_child(python: str, resolution: int, steps: int) -> dict:
-    """The figures of one interpreter."""
-    command = [python, __file__, "--measure", "--resolution", str(resolution), "--steps", str(steps)]
-    result = subprocess.run(command, capture_output=True, text=True, env=dict(os.environ), check=False)
-    if result.returncode:
-        raise SystemExit(f"{python} failed:\n{result.stderr}")
-    return json.loads(result.stdout.strip().splitlines()[-1])
-
-
-def main() -> None:
-    """Measure and print one table, the ratio first."""
-    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("--resolution", type=int, choices=tuple(CELLS), default=12)
-    parser.add_argument("--steps", type=int, default=20)
-    parser.add_argument("--reference", metavar="PYTHON", help="interpreter with the reference installed")
-    parser.add_argument("--measure", action="store_true", help=argparse.SUPPRESS)
-    options = parser.parse_args()
-    if options.measure:
-        measure(options.resolution, options.steps)
-        return
-    cells = CELLS[options.resolution]
-    ours = run_child(sys.executable, options.resolution, options.steps)
+def tabulate(options: argparse.Namespace) -> harness.Table:
+    """Ratio, whole step, parts."""
+    table = harness.Table("coupled_step", (*harness.QUANTITIES, "share", "GB/s", "of copy"))
+    ours = harness.run_child(__file__, {"resolution": options.resolution, "steps": options.steps})
+    cells, seconds = ours["cells"], ours["seconds"]
     if options.reference:
-        theirs = run_child(options.reference, options.resolution, max(2, options.steps // 10))
-        print(f"reference / ours           {theirs['seconds'] / ours['seconds']:8.1f}")
-        print(f"reference, s per step      {theirs['seconds']:8.3f}")
-    print(f"d/h = {options.resolution}, {cells} cells, median of {options.steps} steps")
-    print(f"s per coupled step         {ours['seconds']:8.3f}")
-    print(f"ns per cell and step       {1e9 * ours['seconds'] / cells:8.1f}")
-    print(f"process peak, B per cell   {ours['peak'] / cells:8.1f}")
-    for name, seconds in ours["shares"].items():
-        print(f"  {name:<12} {1e3 * seconds:8.1f} ms {100 * seconds / ours['seconds']:6.1f} %")
-    print(f"processors: {os.cpu_count()}")
+        task = {"resolution": options.resolution, "steps": max(2, options.steps // 10)}
+        theirs = harness.run_child(__file__, task, python=options.reference)
+        table.add("reference / ours", theirs["seconds"] / seconds, "", ">= 75")
+        table.add("step of the reference", theirs["seconds"], "s")
+        table.add("process peak of the reference", theirs["peak"] / cells, "B/cell")
+    table.add("coupled step", seconds, "s", "<= 0.2" if options.resolution == 12 else "", 1.0)
+    table.add("time per cell", 1e9 * seconds / cells, "ns")
+    table.add("process peak", ours["peak"] / cells, "B/cell", "<= 250")
+    table.add("cells", cells, "")
+    table.add("pressure iterations", ours["iterations"], "", "<= 8")
+    copy = harness.copy_bandwidth()
+    table.add("copy in memory", None, "", "", None, copy / 1e9, 1.0)
+    parts = {name: value for name, value in ours["parts"].items() if value > 0}
+    parts["rest"] = seconds - sum(value for name, value in parts.items() if name != "rest")
+    pressure = PRESSURE_START + PRESSURE_ITERATION * ours["iterations"]
+    traffic = {"momentum": MOMENTUM, "viscous": VISCOUS, "pressure": pressure, "rest": REST}
+    for name, value in parts.items():
+        table.add(name, 1e3 * value, "ms", "", value / seconds)
+        if name in traffic:
+            rate = traffic[name] * ours["swept"] / value
+            table.rows[-1][-2:] = [rate / 1e9, rate / copy]
+    return table
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Cells per diameter and number of steps."""
+    parser.add_argument("--resolution", type=int, choices=(6, 8, 12), default=12)
+    parser.add_argument("--steps", type=int, default=20)
+    harness.add_reference(parser)
 
 
 if __name__ == "__main__":
-    main()
+    harness.run(__doc__, measure, tabulate, add_options)

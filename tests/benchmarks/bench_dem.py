@@ -3,11 +3,13 @@
 import argparse
 import time
 
+import harness
 import numpy as np
-from peclet import dem
+
+PARTS = ("search", "velocity", "position")
 
 
-def lattice(count, spacing, generator):
+def lattice(count: int, spacing: float, generator: np.random.Generator) -> tuple[np.ndarray, float]:
     """Jittered simple cubic lattice of about count spheres, and its side."""
     per_side = max(2, round(count ** (1 / 3)))
     sites = np.stack(np.meshgrid(*[np.arange(per_side)] * 3, indexing="ij"), -1).reshape(-1, 3)
@@ -15,7 +17,10 @@ def lattice(count, spacing, generator):
     return (sites + 0.5) * spacing + jitter, per_side * spacing
 
 
-def make(count, friction):
+def measure(count: int, steps: int, friction: float) -> dict:
+    """Seconds per step, its parts, and how many particles and contacts there are."""
+    from peclet import dem
+
     generator = np.random.default_rng(1)
     positions, side = lattice(count, 1.05, generator)
     sim = dem.Simulation(len(positions))
@@ -26,39 +31,42 @@ def make(count, friction):
     sim.set_velocities(generator.normal(0, 0.1, positions.shape))
     sim.set_domain((side, side, 2 * side))
     sim.add_plane((0, 0, 0), (0, 0, 1))
-    return sim
-
-
-def measure(sim, steps):
     sim.step(0.01)
-    parts = dict.fromkeys(sim.diagnostics.profiling_info(), 0.0)
+    parts = np.zeros(len(PARTS))
     start = time.perf_counter()
     for _ in range(steps):
         sim.step(0.01)
-        for name, seconds in sim.diagnostics.profiling_info().items():
-            parts[name] += seconds / steps
-    return (time.perf_counter() - start) / steps, parts
+        parts += list(sim.diagnostics.profiling_info().values())
+    return {
+        "seconds": (time.perf_counter() - start) / steps,
+        "parts": (parts / steps).tolist(),
+        "particles": int(sim.num_particles),
+        "contacts": int(sim.num_contacts),
+        "sweeps": sim.diagnostics.solver_report()["force_sweeps"],
+    }
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__)
+def tabulate(options: argparse.Namespace) -> harness.Table:
+    """One row per number of particles."""
+    shares = (f"{name} share" for name in PARTS)
+    columns = ("particles", "contacts", "ms", "us/particle", *shares, "force sweeps")
+    table = harness.Table("dem", columns)
+    for count in options.counts:
+        task = {"count": count, "steps": options.steps, "friction": options.friction}
+        found = harness.run_child(__file__, task)
+        seconds, particles = found["seconds"], found["particles"]
+        parts = [part / seconds for part in found["parts"]]
+        row = (found["contacts"], 1e3 * seconds, 1e6 * seconds / particles, *parts, found["sweeps"])
+        table.add(str(particles), *row)
+    return table
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """The numbers of particles."""
     parser.add_argument("--counts", type=int, nargs="+", default=[2, 1000, 10000, 100000])
     parser.add_argument("--steps", type=int, default=20)
     parser.add_argument("--friction", type=float, default=0.3)
-    options = parser.parse_args()
-    print(f"contact step, {dem.execution_space}, {options.steps} steps each")
-    print("particles  contacts   s/step   us/particle   search  velocity  position   force sweeps")
-    for count in options.counts:
-        sim = make(count, options.friction)
-        seconds, parts = measure(sim, options.steps)
-        shares = "".join(f"{100 * part / seconds:8.0f} %" for part in parts.values())
-        sweeps = sim.diagnostics.solver_report()["force_sweeps"]
-        number = int(sim.num_particles)
-        print(
-            f"{number:9d} {int(sim.num_contacts):9d} {seconds:8.4f} {1e6 * seconds / number:13.2f} "
-            f"{shares} {sweeps:14d}"
-        )
 
 
 if __name__ == "__main__":
-    main()
+    harness.run(__doc__, measure, tabulate, add_options)

@@ -1,19 +1,18 @@
 // Time, iterations and memory of the pressure solve.
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include "flow/pressure_solver.hpp"
+#include "tests/benchmarks/harness.hpp"
 
 namespace {
 using namespace peclet;
 using namespace peclet::flow;
+using namespace peclet::benchmarks;
 
 using Distance = std::function<Real(Vec3)>;
 
@@ -55,19 +54,11 @@ FaceVector<OpenFraction> sample(const Case& c) {
   return open;
 }
 
-Real periodic(Real x, Real n) { return x - n * std::round(x / n); }
-
-Real sphere(Vec3 x, Vec3 centre, Real radius, const Int3& n) {
-  return norm(Vec3{periodic(x.x - centre.x, n[0]), periodic(x.y - centre.y, n[1]),
-                   periodic(x.z - centre.z, n[2])}) -
-         radius;
-}
-
 Case tank() {
   const Int3 n{88, 304, 88};
   const auto distance = [n](Vec3 x) {
     const Real wall = std::min({x.x - 8, 80 - x.x, x.y - 8, 296 - x.y, x.z - 8, 80 - x.z});
-    return std::min({wall, sphere(x, {44, 200, 44}, 6, n), sphere(x, {45, 215, 44}, 6, n)});
+    return std::min({wall, sphere_distance(x, {44, 200, 44}, 6, n), sphere_distance(x, {45, 215, 44}, 6, n)});
   };
   return {"tank 88x304x88, two spheres", n, distance, RowRanges(Box{{8, 8, 8}, {80, 296, 80}})};
 }
@@ -92,78 +83,114 @@ Case packing(int n, int per_side, Real fraction) {
   const Int3 cells{n, n, n};
   const auto distance = [=](Vec3 x) {
     Real d = n;
-    for (const Vec3& c : centres) d = std::min(d, sphere(x, c, radius, cells));
+    for (const Vec3& c : centres) d = std::min(d, sphere_distance(x, c, radius, cells));
     return d;
   };
   return {"packing " + std::to_string(fraction).substr(0, 4) + " in " + std::to_string(n) + "^3", cells,
           distance, RowRanges(cells)};
 }
 
-double milliseconds() {
-  return 1e3 * std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+/// Spheres that leave gaps of this width between each other and to the wall around the box.
+Case narrow_gaps(int n, Real gap) {
+  const Real radius = 0.2 * n, middle = 0.5 * n + 0.3;
+  const Int3 cells{n, n, n};
+  const auto distance = [=](Vec3 x) {
+    const Vec3 low{middle - radius - gap / 2, middle, middle},
+        high{middle + radius + gap / 2, middle, middle};
+    const Real wall = std::min({x.x, x.y, x.z}) - (middle - 2 * radius - 1.5 * gap);
+    return std::min({wall, sphere_distance(x, low, radius, cells), sphere_distance(x, high, radius, cells)});
+  };
+  return {"gaps of " + std::to_string(gap).substr(0, 4) + " in " + std::to_string(n) + "^3", cells, distance,
+          RowRanges(cells)};
 }
 
-void run(const Case& c, Real tolerance, int repetitions) {
-  const Layout layout(c.cells);
-  const FaceVector<OpenFraction> open = sample(c);
-  PressureSolver solver(Grid{c.cells, {1, 1, 1}, {0, 0, 0}}, PressureSides());
-  double start = milliseconds();
-  solver.set_open_fractions(open, c.rows);
-  const double set_time = milliseconds() - start;
-  start = milliseconds();
-  solver.update_open_fractions({Box{{38, 8, 38}, {50, 20, 50}}, Box{{38, 30, 38}, {50, 42, 50}}});
-  const double update_time = milliseconds() - start;
+/// Two chambers with a hollow sphere in each: four regions of fluid.
+Case split_domain(int n) {
+  const Int3 cells{n, n, n};
+  const auto distance = [=](Vec3 x) {
+    const Real slabs = std::min(std::abs(x.x - 0.03 * n), std::abs(x.x - 0.5 * n)) - 1.3;
+    Real d = slabs;
+    for (const Real s : {0.26, 0.75}) {
+      const Real outside = sphere_distance(x, {s * n, 0.5 * n, 0.5 * n}, 0.15 * n, cells);
+      d = std::min(d, std::abs(outside) - 1.3);
+    }
+    return d;
+  };
+  return {"four regions in " + std::to_string(n) + "^3", cells, distance, RowRanges(cells)};
+}
 
-  const Field<Real> rhs("rhs", layout), phi("phi", layout);
+Field<Real> make_rhs(const Case& c) {
+  const Field<Real> rhs("rhs", Layout(c.cells));
   std::srand(3);
   for (int k = 0; k < c.cells[2]; ++k)
     for (int j = 0; j < c.cells[1]; ++j)
       for (int i = 0; i < c.cells[0]; ++i)
         rhs(i, j, k) = std::sin(0.1 * i + 0.05 * j) * std::cos(0.07 * k) + 2.0 * std::rand() / RAND_MAX - 1;
-  PressureSettings settings;
-  settings.relative_tolerance = tolerance;
-  double best = 1e30, processor = 1e30;
-  SolveReport report;
-  for (int n = 0; n < repetitions; ++n) {
-    phi.fill(0);
-    start = milliseconds();
-    const std::clock_t processor_start = std::clock();
-    report = solver.solve(rhs, phi, settings);
-    best = std::min(best, milliseconds() - start);
-    processor =
-        std::min(processor, 1e3 * static_cast<double>(std::clock() - processor_start) / CLOCKS_PER_SEC);
-  }
+  return rhs;
+}
+
+/// One row per tolerance; the iterations to 1e-6.
+int run(const Case& c, int repetitions, Table& table) {
+  const FaceVector<OpenFraction> open = sample(c);
+  PressureSolver solver(Grid{c.cells, {1, 1, 1}, {0, 0, 0}}, PressureSides());
+  Best set_time, update_time;
+  set_time.add([&] { solver.set_open_fractions(open, c.rows); });
+  update_time.add([&] {
+    solver.update_open_fractions({Box{{38, 8, 38}, {50, 20, 50}}, Box{{38, 30, 38}, {50, 42, 50}}});
+  });
+  const Field<Real> given = make_rhs(c), rhs("rhs", Layout(c.cells)), phi("phi", Layout(c.cells));
   const double cells = static_cast<double>(c.cells[0]) * c.cells[1] * c.cells[2];
-  std::printf("%-30s %7.0e %4d %9.2f %9.2f %9.2f %8.1e %8.1f %9.2f %9.2f %s\n", c.name.c_str(), tolerance,
-              report.iterations, best, processor, 1e6 * best / cells, report.residual,
-              static_cast<Real>(solver.bytes()) / cells, set_time, update_time,
-              report.converged ? "" : "NOT CONVERGED");
-  std::fflush(stdout);
+  int iterations = 0;
+  for (const Real tolerance : {1e-8, 1e-6}) {
+    PressureSettings settings;
+    settings.relative_tolerance = tolerance;
+    Best solve_time;
+    SolveReport report;
+    for (int n = 0; n < repetitions; ++n) {
+      phi.fill(0);
+      Kokkos::deep_copy(rhs.array(), given.array());
+      solve_time.add([&] { report = solver.solve(rhs, phi, settings); });
+    }
+    iterations = report.iterations;
+    table.add({c.name, tolerance, double(iterations), solve_time.wall, solve_time.processor,
+               1e6 * solve_time.wall / cells, static_cast<double>(solver.bytes()) / cells, set_time.wall,
+               update_time.wall, report.converged ? "" : "NOT CONVERGED"});
+  }
+  std::fprintf(stderr, "%s\n", c.name.c_str());
+  return iterations;
+}
+
+std::vector<Case> all_cases() {
+  std::vector<Case> cases{tank()};
+  for (const int n : {32, 48, 64, 96, 128, 160, 256, 320}) cases.push_back(open_box({n, n, n}));
+  for (const Int3& n : {Int3{63, 65, 33}, Int3{127, 127, 127}, Int3{97, 101, 103}, Int3{8, 256, 256},
+                        Int3{256, 256, 8}, Int3{512, 512, 1}})
+    cases.push_back(open_box(n));
+  for (const int n : {96, 160}) cases.push_back(packing(n, 3, 0.5));
+  for (const Real gap : {1.0, 0.25}) cases.push_back(narrow_gaps(96, gap));
+  cases.push_back(split_domain(96));
+  return cases;
 }
 
 }  // namespace
 
-/// Argument: part of the names of the cases to run; all without one.
 int main(int argc, char** argv) {
   const Kokkos::ScopeGuard kokkos(argc, argv);
-  std::printf("%-30s %7s %4s %9s %9s %9s %8s %8s %9s %9s\n", "case", "rtol", "its", "ms", "cpu ms", "ns/cell",
-              "residual", "B/cell", "set ms", "update ms");
-  const std::string wanted = argc > 1 ? argv[1] : "";
-  std::vector<Case> cases{tank()};
-  for (const int n : {32, 48, 64, 96, 127, 128, 160, 256, 320}) cases.push_back(open_box({n, n, n}));
-  cases.push_back(open_box({97, 101, 103}));
-  cases.push_back(open_box({8, 256, 256}));
-  cases.push_back(open_box({256, 256, 8}));
-  cases.push_back(open_box({512, 512, 1}));
-  cases.push_back(packing(96, 3, 0.5));
-  cases.push_back(packing(160, 3, 0.5));
-  bool found = false;
-  for (const Case& c : cases) {
-    if (c.name.find(wanted) == std::string::npos) continue;
-    found = true;
-    for (const Real tolerance : {1e-6, 1e-8}) run(c, tolerance, 8);
+  const Options options(argc, argv);
+  Table table("pressure", {"case", "rtol", "iterations", "ms", "cpu ms", "ns/cell", "B/cell", "set ms",
+                           "update ms", "failure"});
+  int most = 0, coarse = 0, fine = 0;
+  for (const Case& c : all_cases()) {
+    if (!options.wants(c.name)) continue;
+    const int iterations = run(c, 5, table);
+    most = std::max(most, iterations);
+    if (c.name == "32x32x32 open") coarse = iterations;
+    if (c.name == "256x256x256 open") fine = iterations;
   }
-  if (!found)
-    std::fprintf(stderr, "bench_pressure: expected part of the name of a case, found %s\n", argv[1]);
-  return found ? 0 : 1;
+  const auto add_first = [&](const std::string& name, int iterations) {
+    table.add_first({name, 1e-6, double(iterations), "", "", "", "", "", "", ""});
+  };
+  if (most) add_first("most of all cases", most);
+  if (coarse && fine) add_first("growth from 32^3 to 256^3", fine - coarse);
+  return table.finish(options);
 }

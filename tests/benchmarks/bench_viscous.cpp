@@ -1,9 +1,7 @@
 // Time of the viscous solve and of the momentum residual, one velocity component each.
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <cstdio>
-#include <ctime>
+#include <cstdlib>
 #include <functional>
 #include <string>
 #include <vector>
@@ -11,10 +9,12 @@
 #include "flow/immersed_boundary.hpp"
 #include "flow/momentum.hpp"
 #include "flow/viscous_solver.hpp"
+#include "tests/benchmarks/harness.hpp"
 
 namespace {
 using namespace peclet;
 using namespace peclet::flow;
+using namespace peclet::benchmarks;
 
 struct Case {
   std::string name;
@@ -22,17 +22,11 @@ struct Case {
   std::function<Real(Vec3)> distance;  ///< positive in the fluid
 };
 
-Real sphere(Vec3 x, Vec3 centre, Real radius, const Int3& n) {
-  Vec3 r = x - centre;
-  for (int a = 0; a < 3; ++a) r[a] -= n[a] * std::round(r[a] / n[a]);
-  return norm(r) - radius;
-}
-
 Case tank() {
   const Int3 n{88, 304, 88};
   const auto distance = [n](Vec3 x) {
     const Real wall = std::min({x.x - 8.3, 80.3 - x.x, x.y - 8.3, 296.3 - x.y, x.z - 8.3, 80.3 - x.z});
-    return std::min({wall, sphere(x, {44, 200, 44}, 6, n), sphere(x, {45, 215, 44}, 6, n)});
+    return std::min({wall, sphere_distance(x, {44, 200, 44}, 6, n), sphere_distance(x, {45, 215, 44}, 6, n)});
   };
   return {"tank 88x304x88, two spheres", n, distance};
 }
@@ -46,27 +40,10 @@ Case one_sphere(int n) {
   const Int3 cells{n, n, n};
   const Vec3 middle{0.5 * n + 0.1, 0.5 * n - 0.2, 0.5 * n};
   return {"sphere in " + std::to_string(n) + "^3", cells,
-          [=](Vec3 x) { return sphere(x, middle, 0.3 * n, cells); }};
+          [=](Vec3 x) { return sphere_distance(x, middle, 0.3 * n, cells); }};
 }
 
-struct Stopwatch {
-  std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
-  std::clock_t processor = std::clock();
-};
-
-/// Best wall and processor milliseconds of several runs.
-struct Best {
-  double wall = 1e30, processor = 1e30;
-
-  void add(const Stopwatch& watch) {
-    const std::chrono::duration<double> wall_time = std::chrono::steady_clock::now() - watch.start;
-    wall = std::min(wall, 1e3 * wall_time.count());
-    processor =
-        std::min(processor, 1e3 * static_cast<double>(std::clock() - watch.processor) / CLOCKS_PER_SEC);
-  }
-};
-
-void run(const Case& c, Real number, int repetitions) {
+void run(const Case& c, Real number, int repetitions, Table& table) {
   const Layout layout(c.cells);
   const Grid grid{c.cells, {1, 1, 1}, {0, 0, 0}};
   const Periodicity periodic;
@@ -108,36 +85,30 @@ void run(const Case& c, Real number, int repetitions) {
   const WallRows &fixed = boundary.fixed_rows(component), &moving = boundary.moving_rows(component);
   const Field<OpenFraction>& open = boundary.open()[component];
   for (int n = 0; n < repetitions; ++n) {
-    const Stopwatch leak_watch;
-    advective_leak(component, terms, fixed, moving);
-    leak_time.add(leak_watch);
-    const Stopwatch residual_watch;
-    compute_momentum_residual(component, terms, plan, boundary.rows(), fixed, moving, residual);
-    residual_time.add(residual_watch);
-    const Stopwatch solve_watch;
+    leak_time.add([&] { advective_leak(component, terms, fixed, moving); });
+    residual_time.add(
+        [&] { compute_momentum_residual(component, terms, plan, boundary.rows(), fixed, moving, residual); });
     Real left_over = 0;
     const ViscousSystem system{grid, sides, component, number, &plan, boundary.rows(), open, fixed, moving};
-    report = solver.solve(system, residual, correction, 1e-8, 1, 200, left_over);
-    solve_time.add(solve_watch);
+    solve_time.add([&] { report = solver.solve(system, residual, correction, 1e-8, 1, 200, left_over); });
   }
-  std::printf("%-28s %8.3g %5d %9.1e %7.2f %7.2f %7.2f %7.2f %7.2f %7.2f %s\n", c.name.c_str(), number,
-              report.iterations, report.residual, solve_time.wall, solve_time.processor, residual_time.wall,
-              residual_time.processor, leak_time.wall, leak_time.processor,
-              report.converged ? "" : "NOT CONVERGED");
-  std::fflush(stdout);
+  const double cells = static_cast<double>(c.cells[0]) * c.cells[1] * c.cells[2];
+  table.add({c.name, number, double(report.iterations), report.residual, solve_time.wall,
+             solve_time.processor, 1e6 * solve_time.wall / cells, residual_time.wall, leak_time.wall,
+             report.converged ? "" : "NOT CONVERGED"});
 }
 
 }  // namespace
 
-/// Argument: part of the names of the cases to run; all without one.
 int main(int argc, char** argv) {
   const Kokkos::ScopeGuard kokkos(argc, argv);
-  std::printf("%-28s %8s %5s %9s %15s %15s %15s\n", "case", "nu dt/h2", "its", "residual", "solve ms (cpu)",
-              "residual ms", "leak ms");
-  const std::string wanted = argc > 1 ? argv[1] : "";
+  const Options options(argc, argv);
+  Table table("viscous", {"case", "nu dt/h2", "iterations", "residual", "solve ms", "cpu ms", "ns/cell",
+                          "momentum ms", "leak ms", "failure"});
   std::vector<Case> cases{tank(), one_sphere(64)};
   for (const int n : {48, 64, 96, 128, 160, 256, 320}) cases.push_back(open_box({n, n, n}));
   for (const Case& c : cases)
-    if (c.name.find(wanted) != std::string::npos)
-      for (const Real number : {0.017, 1.0, 50.0, 1e4}) run(c, number, number > 1 ? 3 : 10);
+    if (options.wants(c.name))
+      for (const Real number : {0.017, 1.0, 50.0, 1e4}) run(c, number, number > 1 ? 3 : 10, table);
+  return table.finish(options);
 }

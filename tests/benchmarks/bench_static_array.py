@@ -1,0 +1,91 @@
+"""Time to march a simple cubic array of spheres to its steady flow, and the reference beside it.
+
+Stokes flow driven by a body force through a periodic cube with one sphere. Steady is the flow when the force
+on the sphere differs from the driving force by no more than the tolerance. Both run the calls of 0.5.1 with
+the same time steps, the first of which is the default of the reference, and as many of them.
+"""
+
+import argparse
+import sys
+import time
+
+import harness
+
+VISCOSITY = 0.1
+
+
+def measure(size: int, tolerance: float, time_step: float, most_steps: int) -> dict:
+    """Seconds to the tolerance, or to most_steps."""
+    import numpy as np
+    from peclet import flow
+    from peclet.core import geom
+
+    force, radius = 1e-4, size * (3 * 0.125 / (4 * np.pi)) ** (1 / 3)
+    scene = geom.SceneBuilder()
+    ball = scene.add_leaf("sphere", [radius])
+    node_ints, node_reals, _, _ = scene.encode()
+    instance = np.zeros(17)
+    instance[:3] = size / 2 + 0.3
+    instance[6:8] = 1
+    solver = flow.Solver(size, size, size)
+    solver.set_rho(1.0)
+    solver.set_mu(VISCOSITY)
+    solver.set_dt(time_step)
+    solver.set_velocity_solver_params(200)
+    solver.set_pressure_solver_params(200)
+    solver.set_body_force(force, 0.0, 0.0)
+    solver.set_scene(node_ints, node_reals, np.array([ball, -1], dtype=np.int32), instance, True)
+    solver.set_solid_from_scene(True)
+    driving = force * np.count_nonzero(solver.get_ox() > 0)
+    residuals, start = [], time.perf_counter()
+    while len(residuals) < most_steps:
+        solver.step()
+        drag = float(solver.hydro_force_torque_reaction()[0, 0, 0])
+        residuals.append(abs(drag / driving - 1))
+        if residuals[-1] <= tolerance:
+            break
+    seconds = time.perf_counter() - start
+    return {"seconds": seconds, "residuals": residuals}
+
+
+def tabulate(options: argparse.Namespace) -> harness.Table:
+    """Ratios, then steps and times."""
+    table = harness.Table("static_array", ("nu dt / h2", *harness.QUANTITIES))
+    interpreters = {"ours": sys.executable}
+    if options.reference:
+        interpreters["reference"] = options.reference
+    ratios, rows = [], []
+    for time_step in options.time_steps:
+        task = {
+            "size": options.size,
+            "tolerance": options.tolerance,
+            "time_step": time_step,
+            "most_steps": options.steps,
+        }
+        found = {
+            name: harness.run_child(__file__, task, python=python) for name, python in interpreters.items()
+        }
+        number = f"{VISCOSITY * time_step:g}"
+        for name, one in found.items():
+            one["per step"] = one["seconds"] / len(one["residuals"])
+            rows.append([number, f"{name}, per step", one["per step"], "s", None])
+            rows.append([number, f"{name}, steps", len(one["residuals"]), None, None])
+            rows.append([number, f"{name}, residual after them", one["residuals"][-1], None, None])
+        if options.reference:
+            ratio = found["reference"]["per step"] / found["ours"]["per step"]
+            ratios.append([number, "reference / ours, per step", ratio, None, ">= 30"])
+    table.rows = ratios + rows
+    return table
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """The case."""
+    parser.add_argument("--size", type=int, default=64, help="cells along each axis")
+    parser.add_argument("--tolerance", type=float, default=1e-3)
+    parser.add_argument("--steps", type=int, default=10, help="at most")
+    parser.add_argument("--time-steps", type=float, nargs="+", default=[50.0, 100.0, 1000.0])
+    harness.add_reference(parser)
+
+
+if __name__ == "__main__":
+    harness.run(__doc__, measure, tabulate, add_options)
