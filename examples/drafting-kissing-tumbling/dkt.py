@@ -298,6 +298,7 @@ def collect(case: Case, simulation: CoupledSimulation, frames: list[PlaneSlice],
 # What the two spheres do. A gap of a thousandth of a diameter counts as contact: spheres kept apart by
 # impulses approach zero from above. One is "faster" from 5 % on.
 TOUCH = 1e-3
+NO_IMPULSE = 1e-6  # of a contact, relative to the momentum of a sphere
 FASTER = 1.05
 SIDE_BY_SIDE = 0.8
 
@@ -336,10 +337,13 @@ def measure(result: Result) -> Measures:
     faster = result.fall_speed[:, FOLLOWER] > FASTER * result.fall_speed[:, LEADER]
     nothing = (math.nan, math.nan)
     before, after = nothing, nothing
-    if contact is not None:
-        along = result.speed_along_line
-        before, after = tuple(along[contact - 1].tolist()), tuple(along[contact].tolist())
     momentum = DENSITY_RATIO * DENSITY * math.pi / 6 * DIAMETER**3 * np.abs(result.velocity).max()
+    if contact is not None:
+        # the impulse may come a step after the gap is counted as closed; position-only contact has none
+        pushed = np.abs(result.contact_momentum).max(axis=(1, 2)) > NO_IMPULSE * momentum
+        touch = contact + int(np.argmax(pushed[contact:]))
+        along = result.speed_along_line
+        before, after = tuple(along[touch - 1].tolist()), tuple(along[touch].tolist())
     impulse = result.contact_momentum[touching & (wall_distance(result) > 0.01).all(axis=1)]
     return Measures(
         drafting=first_time(result, faster & approach & (result.time > 0)),

@@ -252,7 +252,10 @@ def oscillating_cylinder(
         curves["cylinder"] = {"time": run.time[last] / cylinder.PERIOD, "force": run.force[last]}
     drag, added = run.morison()
     name = f"in-line oscillating cylinder, d/h {resolution}"
-    return [Row(name, "c_d", 2.09, drag, target), Row(name, "c_m", 1.45, added, target)]
+    return [
+        Row(name, quantity, reference, found, target, bound=1.25 * target)
+        for quantity, reference, found in (("c_d", 2.09, drag), ("c_m", 1.45, added))
+    ]
 
 
 def towed_with_inertia(reynolds: float, settle: int, target: float, bound: float) -> Rows:
