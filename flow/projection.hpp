@@ -28,7 +28,7 @@ void add_potential(const RowRanges& rows, const Field<Real>& potential, const Fi
 /// What the pressure correction phi changes.
 struct ProjectionUpdate {
   Real density_over_time_step = 1;
-  Real implicit_viscosity = 0;  // theta mu
+  Real implicit_viscosity = 0;  // theta mu, or a share of it
   Field<Real> potential;        // phi, ghosts filled
   Field<Real> divergence;       // of the predicted velocity
 };

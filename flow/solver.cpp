@@ -13,6 +13,16 @@ namespace {
 
 /// Implicit weight of viscosity from the second step on, see flow/momentum.hpp.
 constexpr Real second_order_weight = 9.0 / 16.0;
+/// Share of the rotational pressure update that a box bears at any viscosity: all of it in a closed one, less
+/// with Outflow sides, and the less the more axes have them, because of the edges where they meet
+/// [GuermondMinevShen2006].
+Real viscous_rotational_share(const DomainSides& sides) {
+  int axes = 0;
+  for (const auto& side : sides.side)
+    axes += side[0].kind == SideKind::Outflow || side[1].kind == SideKind::Outflow;
+  return 1.0 / (1 + axes);
+}
+
 /// Courant number from which implicit advection, extrapolated in time, needs damping.
 constexpr Real extrapolation_limit = 0.5;
 /// Divergence that counts as zero, relative to velocity / spacing: what rounding leaves.
@@ -87,8 +97,9 @@ void Solver::step() {
       velocity_scale * terms.time_step * (1 / grid_.spacing[0] + 1 / grid_.spacing[1] + 1 / grid_.spacing[2]);
   // viscosity that reaches further than a cell in a step keeps backflow in check by itself
   const Real cell = grid_.smallest_spacing();
-  const bool stops_backflow =
-      terms.scheme != AdvectionScheme::None && terms.kinematic_viscosity * terms.time_step < cell * cell;
+  const bool is_viscous = terms.kinematic_viscosity * terms.time_step >= cell * cell;
+  const bool stops_backflow = terms.scheme != AdvectionScheme::None && !is_viscous;
+  const Real rotational_share = is_viscous ? viscous_rotational_share(sides_) : 1;
   fill_velocity(extrapolated_, 2, stops_backflow);
   fill_pressure_ghosts(pressure_, sides_.pressure_sides(), 1);
 
@@ -96,7 +107,7 @@ void Solver::step() {
 
   predict_velocity(terms, velocity_scale);
   std::swap(velocity_, previous_);  // velocity_ is now the predicted one
-  project_velocity(velocity_scale, terms.implicit_weight);
+  project_velocity(velocity_scale, rotational_share * terms.implicit_weight);
   impose_body_motion();
   fill_velocity(velocity_, 1);
   carry_scalars(terms.step_ratio > 0 && boundary_.cut_cells().count == 0);
@@ -179,7 +190,7 @@ void Solver::predict_velocity(const MomentumTerms& terms, Real velocity_scale) {
   }
 }
 
-void Solver::project_velocity(Real velocity_scale, Real implicit_weight) {
+void Solver::project_velocity(Real velocity_scale, Real rotational_weight) {
   for (int c = 0; c < 3; ++c) {
     impose_body_velocity(boundary_.body_faces(c), velocity_[c]);
     impose_predicted_velocity(boundary_.slits(c), velocity_[c]);
@@ -204,7 +215,7 @@ void Solver::project_velocity(Real velocity_scale, Real implicit_weight) {
     pressure_report_ = {report.iterations, report.residual, report.converged};
   }
   const ProjectionUpdate update{settings_.density / settings_.time_step,
-                                implicit_weight * settings_.viscosity, potential_, divergence_};
+                                rotational_weight * settings_.viscosity, potential_, divergence_};
   apply_projection(grid_, plan_, boundary_.rows(), boundary_.open(), sides_, update, velocity_, pressure_);
   fill_pressure_ghosts(pressure_, sides_.pressure_sides(), 1);
   fill_pressure_ghosts(divergence_, sides_.pressure_sides(), 1);

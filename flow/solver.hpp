@@ -124,7 +124,7 @@ class Solver {
   void balance_body_force();
   void return_advective_leak(MomentumTerms& terms);
   void predict_velocity(const MomentumTerms& terms, Real velocity_scale);
-  void project_velocity(Real velocity_scale, Real implicit_weight);
+  void project_velocity(Real velocity_scale, Real rotational_weight);
   /// Closed faces in the state move with their body.
   void impose_body_motion();
   /// nu dt, on which the slits depend.
