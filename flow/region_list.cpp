@@ -25,6 +25,12 @@ bool overlap(const Box& a, const Box& b, const Int3& cells) {
          overlap_on_axis(a, b, 2, cells[2]);
 }
 
+void list_cells(const RegionView& view, Index total) {
+  const RegionView target = view;
+  for_each(
+      "flow::list_region_cells", total, KOKKOS_LAMBDA(Index n) { target.listed(n) = target.find_cell(n); });
+}
+
 }  // namespace
 
 void RegionList::assign(const std::vector<Box>& boxes, const std::vector<int>& bodies) {
@@ -44,15 +50,10 @@ void RegionList::assign(const std::vector<Box>& boxes, const std::vector<int>& b
   upload("flow::region_body", bodies, view_.body);
   upload("flow::region_first_neighbor", first_neighbor, view_.first_neighbor);
   upload("flow::region_neighbors", neighbors, view_.neighbors);
-  if (view_.count > 1) list_cells();
-}
-
-void RegionList::list_cells() {
-  const auto total = static_cast<std::size_t>(total_);
-  if (view_.listed.extent(0) < total)
-    view_.listed = Array<RegionCell>("flow::region_cells", total + total / 4);
-  const RegionView view = view_;
-  for_each("flow::list_region_cells", total_, KOKKOS_LAMBDA(Index n) { view.listed(n) = view.find_cell(n); });
+  if (view_.count < 2) return;
+  if (static_cast<Index>(view_.listed.extent(0)) < total_)
+    view_.listed = Array<RegionCell>("flow::region_cells", static_cast<std::size_t>(total_ + total_ / 4));
+  list_cells(view_, total_);
 }
 
 std::vector<Box> RegionList::boxes_inside() const {

@@ -82,8 +82,6 @@ class RegionList {
   std::vector<Box> boxes_inside() const;
 
  private:
-  void list_cells();
-
   RegionView view_;
   std::vector<Box> boxes_;
   Index total_ = 0;
