@@ -55,9 +55,15 @@ TEST(PressureConvergence, NeedsNoMoreIterationsOnLargerGrids) {
 }
 
 TEST(PressureConvergence, NeedsFewIterationsAtOddSizesAndInThePlane) {
-  expect_few_iterations(
-      {{53, 47, 61}, {97, 101, 103}, {63, 65, 33}, {61, 59, 67}, {7, 101, 99}, {129, 3, 65}, {256, 256, 1}, {1, 128, 100}},
-      9);
+  expect_few_iterations({{53, 47, 61},
+                         {97, 101, 103},
+                         {63, 65, 33},
+                         {61, 59, 67},
+                         {7, 101, 99},
+                         {129, 3, 65},
+                         {256, 256, 1},
+                         {1, 128, 100}},
+                        9);
 }
 
 TEST(PressureConvergence, NeedsFewIterationsAlongALine) {
