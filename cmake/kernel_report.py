@@ -8,17 +8,16 @@ from __future__ import annotations
 import dataclasses
 import pathlib
 import re
-import shutil
-import subprocess
 import sys
 from collections.abc import Iterable
 
 ENTRY = re.compile(r"Compiling entry function '(\w+)'")
 STACK = re.compile(r"(\d+) bytes stack frame, (\d+) bytes spill stores, (\d+) bytes spill loads")
 REGISTERS = re.compile(r"Used (\d+) registers")
-NAME = re.compile(r"peclet::(?:\w+::|\(anonymous namespace\)::)*\w+")
-LAUNCHERS = re.compile(
-    r"::(?:for_each\w*|sum_\w+|max_\w+|enumerate|exclusive_sum|sweep\w*|Array|Field|Stage)$"
+LENGTH = re.compile(r"S[0-9A-Z]*_|([1-9]\d*)")  # or a substitution
+LAUNCHER = re.compile(
+    r"peclet|core|flow|dem|detail|launch\w*|for_each\w*|sum_\w+|max_\w+|enumerate|exclusive_sum|sweep\w*"
+    r"|Array|Field|Stage|RowRanges|_GLOBAL_\w*"
 )
 
 
@@ -31,7 +30,11 @@ class Kernel:
     stack: int = 0
     spill_stores: int = 0
     spill_loads: int = 0
-    name: str = ""
+
+    @property
+    def name(self) -> str:
+        """As in the sources."""
+        return name_of(self.symbol)
 
     @property
     def spills(self) -> int:
@@ -54,24 +57,28 @@ def parse(lines: Iterable[str]) -> list[Kernel]:
     return list(kernels.values())
 
 
-def name_kernels(kernels: list[Kernel]) -> None:
-    """The functions of ours that the symbols contain, launchers left out."""
-    names = [kernel.symbol for kernel in kernels]
-    if kernels and shutil.which("c++filt"):
-        text = "\n".join(names)
-        names = subprocess.run(
-            ["c++filt"], input=text, capture_output=True, text=True, check=True
-        ).stdout.split("\n")
-    for kernel, symbol in zip(kernels, names, strict=False):
-        ours = [name for name in dict.fromkeys(NAME.findall(symbol)) if not LAUNCHERS.search(name)]
-        short = [name.removeprefix("peclet::").replace("(anonymous namespace)::", "") for name in ours[:2]]
-        kernel.name = " in ".join(reversed(short)) or symbol[:80]
+def identifiers(symbol: str) -> list[str]:
+    """The names in a mangled symbol, each of which follows its length."""
+    names, place = [], 0
+    while found := LENGTH.search(symbol, place):
+        place = found.end()
+        name = symbol[place : place + int(found[1] or 0)]
+        if name.isidentifier():
+            names.append(name)
+            place += len(name)
+    return names
+
+
+def name_of(symbol: str) -> str:
+    """The first names of ours that are not those of launchers; demanglers reject symbols of nvcc."""
+    ours = symbol.partition("6peclet")[2].partition("PKc")[0]
+    names = [name for name in dict.fromkeys(identifiers(ours)) if not LAUNCHER.fullmatch(name)]
+    return " ".join(names[:3]) or symbol[:80]
 
 
 def report(kernels: list[Kernel], most: int) -> str:
     """Totals, then the kernels with most spills and registers."""
     ours = [kernel for kernel in kernels if "peclet" in kernel.symbol]
-    name_kernels(ours)
     ours.sort(key=lambda kernel: (-kernel.spills, -kernel.registers, kernel.name))
     spilling = sum(kernel.spills > 0 for kernel in ours)
     lines = [f"{len(ours)} kernels, {spilling} of them spill registers", "registers  stack  spills  kernel"]
