@@ -1,13 +1,10 @@
 """Share of the geometry update in a step when a hundred spheres move through a periodic box."""
 
 import argparse
-import statistics
-import time
 
 import harness
 import numpy as np
-
-WARM_UP = 3
+import towed_spheres
 
 
 def lattice(count: int, size: int) -> np.ndarray:
@@ -20,38 +17,9 @@ def lattice(count: int, size: int) -> np.ndarray:
 
 def measure(count: int, size: int, radius: float, steps: int) -> dict:
     """Medians over the steps."""
-    from peclet import flow
-    from peclet.core import geom
-
     positions = lattice(count, size)
     velocities = np.random.default_rng(2).uniform(-0.1, 0.1, positions.shape)
-    scene = geom.SceneBuilder()
-    ball = scene.add_leaf("sphere", [radius])
-    for position in positions:
-        scene.add_instance(ball, translation=position)
-    solver = flow.Solver(size, size, size)
-    solver.set_mu(0.005)
-    solver.set_dt(1)
-    solver.set_advection(True)
-    solver.set_advection_scheme(1)
-    solver.set_scene(*scene.encode(), periodic=True)
-    solver.set_solid_from_scene()
-    seconds, parts, iterations = [], [], []
-    for step in range(steps + WARM_UP):
-        start = time.perf_counter()
-        for body in range(count):
-            solver.set_instance_transform(body, positions[body] + step * velocities[body])
-            solver.set_instance_motion(body, velocities[body])
-        solver.rebuild_geometry()
-        solver.step()
-        seconds.append(time.perf_counter() - start)
-        parts.append(solver.diagnostics.last_step_timers())
-        iterations.append(solver.diagnostics.last_pressure_iterations())
-    return {
-        "seconds": statistics.median(seconds[WARM_UP:]),
-        "parts": {name: statistics.median(part[name] for part in parts[WARM_UP:]) for name in parts[0]},
-        "iterations": max(iterations[WARM_UP:]),
-    }
+    return towed_spheres.march(size, radius, positions, velocities, steps)
 
 
 def tabulate(options: argparse.Namespace) -> harness.Table:

@@ -3,14 +3,13 @@
 import csv
 import json
 import re
-import sys
 
 import numpy as np
 import pytest
 
 from examples.performance import tables
 from tests.benchmarks import harness
-from tests.conftest import REPOSITORY
+from tests.conftest import REPOSITORY, run_page
 
 FOLDER = REPOSITORY / "examples" / "performance"
 BENCHMARKS = [
@@ -19,17 +18,7 @@ BENCHMARKS = [
 
 
 def test_cells_run_in_order(monkeypatch, capsys):
-    monkeypatch.setenv("MPLBACKEND", "Agg")
-    monkeypatch.chdir(FOLDER)
-    monkeypatch.setattr(sys, "path", [*sys.path])
-    text = (FOLDER / "index.qmd").read_text(encoding="utf-8")
-    names = {}
-    for code in re.findall(r"^```\{python\}\n(.*?)^```$", text, re.MULTILINE | re.DOTALL):
-        exec(compile(code, "index.qmd", "exec"), names)
-    from matplotlib import pyplot
-
-    assert len(pyplot.get_fignums()) == text.count("label: fig-")
-    pyplot.close("all")
+    run_page(FOLDER, monkeypatch)
     shown = capsys.readouterr().out.strip().split("\n\n")
     assert len(shown) == len(tables.NAMES) + 1
     for table in shown:

@@ -1,28 +1,15 @@
 """The page examples/validation: its cells run, its table is well formed, rows are read as written."""
 
-import re
-import sys
-
 import pytest
 
 from examples.validation import results
-from tests.conftest import REPOSITORY
+from tests.conftest import REPOSITORY, run_page
 
 FOLDER = REPOSITORY / "examples" / "validation"
 
 
 def test_cells_run_in_order(monkeypatch, capsys):
-    monkeypatch.setenv("MPLBACKEND", "Agg")
-    monkeypatch.chdir(FOLDER)
-    monkeypatch.setattr(sys, "path", [*sys.path])
-    text = (FOLDER / "index.qmd").read_text(encoding="utf-8")
-    names = {}
-    for code in re.findall(r"^```\{python\}\n(.*?)^```$", text, re.MULTILINE | re.DOTALL):
-        exec(compile(code, "index.qmd", "exec"), names)
-    from matplotlib import pyplot
-
-    assert len(pyplot.get_fignums()) == text.count("label: fig-")
-    pyplot.close("all")
+    run_page(FOLDER, monkeypatch)
     lines = capsys.readouterr().out.strip().splitlines()
     assert len(lines) == 2 + len(results.read())
     assert len({line.count("|") for line in lines}) == 1
