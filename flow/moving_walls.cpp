@@ -143,12 +143,16 @@ void refresh_cut_cells(const SolidSampler& solid, const FaceVector<OpenFraction>
       });
 }
 
-void impose_body_velocity(const BodyFaces& faces, const Field<Real>& velocity) {
-  const BodyFaces source = faces;
+void impose_values(Index count, const Array<Index>& faces, const Array<Real>& values,
+                   const Field<Real>& velocity) {
+  const Array<Index> target = faces;
+  const Array<Real> source = values;
   const Field<Real> u = velocity;
-  for_each(
-      "flow::impose_body_velocity", faces.count,
-      KOKKOS_LAMBDA(Index n) { u[source.face(n)] = source.velocity(n); });
+  for_each("flow::impose_values", count, KOKKOS_LAMBDA(Index n) { u[target(n)] = source(n); });
+}
+
+void impose_body_velocity(const BodyFaces& faces, const Field<Real>& velocity) {
+  impose_values(faces.count, faces.face, faces.velocity, velocity);
 }
 
 }  // namespace peclet::flow

@@ -41,6 +41,10 @@ void refresh_body_faces(int c, const SolidSampler& solid, const BodyFaces& faces
 void refresh_cut_cells(const SolidSampler& solid, const FaceVector<OpenFraction>& open,
                        const DomainSides& sides, const CutCells& cells);
 
+/// velocity[face] = value, for the first count faces.
+void impose_values(Index count, const Array<Index>& faces, const Array<Real>& values,
+                   const Field<Real>& velocity);
+
 /// velocity[face] = velocity of the body there.
 void impose_body_velocity(const BodyFaces& faces, const Field<Real>& velocity);
 

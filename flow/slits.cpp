@@ -1,5 +1,7 @@
 #include "flow/slits.hpp"
 
+#include "flow/moving_walls.hpp"
+
 namespace peclet::flow {
 
 void Slits::reserve(Index capacity) {
@@ -59,11 +61,7 @@ void refresh_slits(int c, const SolidSampler& solid, const Slits& slits) {
 }
 
 void impose_wall_velocity(const Slits& slits, const Field<Real>& velocity) {
-  const Slits source = slits;
-  const Field<Real> u = velocity;
-  for_each(
-      "flow::impose_wall_velocity", slits.count,
-      KOKKOS_LAMBDA(Index n) { u[source.face(n)] = source.wall_velocity(n); });
+  impose_values(slits.count, slits.face, slits.wall_velocity, velocity);
 }
 
 void impose_wall_velocity_where_uncovered(const Slits& slits, int body, const Field<OpenFraction>& open,
@@ -105,11 +103,7 @@ void predict_slits(const Slits& slits, const Field<Real>& velocity, const Field<
 }
 
 void impose_predicted_velocity(const Slits& slits, const Field<Real>& velocity) {
-  const Slits source = slits;
-  const Field<Real> u = velocity;
-  for_each(
-      "flow::impose_predicted_velocity", slits.count,
-      KOKKOS_LAMBDA(Index n) { u[source.face(n)] = source.predicted(n); });
+  impose_values(slits.count, slits.face, slits.predicted, velocity);
 }
 
 }  // namespace peclet::flow
