@@ -11,9 +11,10 @@ from examples.validation.comparisons import (
     cavity_rows,
     closed_cube,
     closed_duct,
+    cylinder_at_rest,
     dense_and_dilute,
     falling_sphere,
-    oscillating_cylinder,
+    moving_cylinder,
     oscillating_sphere,
     settling_in_box,
     settling_in_wide_tank,
@@ -136,13 +137,18 @@ CASES = (
     ),
     Case(
         "oscillating cylinder",
-        small=lambda: oscillating_cylinder(12, 10, 2, 0.1),
-        full=lambda curves: oscillating_cylinder(16, 12, 4, 0.04, curves),
+        small=lambda: moving_cylinder(12, 10, 2, 0.1, 0.1),
+        full=lambda curves: moving_cylinder(16, 16, 4, 0.04, 0.07),
     ),
     Case(
         "oscillating cylinder, finer grid",
         small=None,
-        full=lambda curves: oscillating_cylinder(32, 16, 6, 0.04),
+        full=lambda curves: moving_cylinder(32, 16, 6, 0.04, 0.05, curves),
+    ),
+    Case(
+        "oscillating cylinder in its own frame",
+        small=lambda: cylinder_at_rest(12, 0.08),
+        full=lambda curves: cylinder_at_rest(24, 0.04),
     ),
     Case(
         "heated sphere",

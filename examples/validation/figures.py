@@ -45,15 +45,20 @@ def draw_shedding() -> Figure:
 
 
 def draw_oscillation() -> Figure:
-    """Force on the oscillating cylinder in its last period, and the published fit."""
+    """Force on the oscillating cylinder in its last period, and that in unbounded fluid."""
     curve = read_curve("cylinder")
-    phase = 2 * np.pi * curve["time"]
-    u, acceleration = -np.cos(phase), cylinder.OMEGA * np.sin(phase)
-    fit = -2.09 * np.abs(u) * u - np.pi / 2 * 1.45 * acceleration
     with plt.rc_context(STYLE):
         figure, axis = plt.subplots(figsize=(5.2, 3), layout="constrained")
-        axis.plot(curve["time"], curve["force"], color=BLUE, linewidth=1, label="found")
-        axis.plot(curve["time"], fit, color="0.5", linestyle=":", label="Morison, published coefficients")
+        axis.plot(
+            curve["time"] - np.floor(curve["time"][0]), curve["force"], color=BLUE, linewidth=1, label="found"
+        )
+        axis.plot(
+            *cylinder.unbounded_force(),
+            color=ORANGE,
+            linestyle="--",
+            linewidth=1,
+            label="unbounded fluid, polar grid",
+        )
         axis.set(xlabel="time / period", ylabel="2 F / (rho U² d)")
         axis.legend()
     return figure
