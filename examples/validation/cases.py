@@ -57,7 +57,7 @@ CASES = (
     Case(
         "cylinder in a channel, shedding",
         small=None,
-        full=lambda curves: shedding_cylinder(20, 6, 0.02, curves),
+        full=lambda curves: shedding_cylinder(30, 6, 0.02, curves),
     ),
     Case(
         "spheres at rest",
@@ -116,24 +116,22 @@ CASES = (
     Case(
         "ten Cate E1",
         small=lambda: settling_in_box("E1", 6, 0.02, 0.02),
-        full=lambda curves: settling_in_box("E1", 8, 0.02, 0.02, curves),
+        full=lambda curves: settling_in_box("E1", 12, 0.02, 0.02, curves),
     ),
     Case(
         "ten Cate E4",
         small=None,
-        full=lambda curves: settling_in_box("E4", 8, 0.02, 0.02, curves),
+        full=lambda curves: settling_in_box("E4", 12, 0.02, 0.02, curves),
     ),
     Case(
-        "ten Cate, finer grid",
+        "settling in a wide tank, Re 20",
         small=None,
-        full=lambda curves: settling_in_box("E1", 12, 0.02, 0.02) + settling_in_box("E4", 12, 0.02, 0.02),
+        full=lambda curves: settling_in_wide_tank(20, 12, 10, 18, 0.03, 0.04),
     ),
     Case(
-        "settling in a wide tank",
+        "settling in a wide tank, Re 80",
         small=None,
-        full=lambda curves: (
-            settling_in_wide_tank(20, 6, 10, 0.03, 0.045) + settling_in_wide_tank(80, 8, 8, 0.03, 0.03)
-        ),
+        full=lambda curves: settling_in_wide_tank(80, 8, 8, 24, 0.03, 0.03),
     ),
     Case(
         "oscillating cylinder",

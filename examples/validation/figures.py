@@ -69,7 +69,7 @@ def draw_settling() -> Figure:
     with plt.rc_context(STYLE):
         figure, axes = plt.subplots(1, 2, figsize=(7.6, 2.8), sharey=True, layout="constrained")
         for axis, name in zip(axes, ("E1", "E4"), strict=True):
-            curve, case = read_curve(f"settling-{name}-8"), Experiment.named(name)
+            curve, case = read_curve(f"settling-{name}-12"), Experiment.named(name)
             axis.plot(curve["time"], curve["speed"], color=BLUE)
             for value, text in ((case.measured, "measured"), (case.simulated, "simulated")):
                 axis.axhline(value, color="0.6", linewidth=0.8)
