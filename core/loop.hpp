@@ -249,30 +249,41 @@ Real sum_each(const std::string& label, Index count, const Body& body) {
   return total;
 }
 
-/// positions[n] = number of m < n with keep(m); returns the number kept in all. Order is kept.
+/// Lists the n < count with keep(n), in order; returns their number. list has room for count entries.
 template <class Keep>
-Index enumerate(const std::string& label, Index count, const Array<Index>& positions, const Keep& keep) {
+Index list_where(const std::string& label, Index count, const Array<Index>& list, const Keep& keep) {
   Index total = 0;
-  if (is_serial_list(count))
-    for (Index n = 0; n < count; ++n) {
-      positions(n) = total;
-      total += keep(n) ? 1 : 0;
+  if constexpr (runs_on_host) {
+    constexpr Index most_chunks = 64;
+    const Index threads = static_cast<Index>(ExecutionSpace().concurrency());
+    const Index chunks = is_serial_list(count) ? 1 : (threads < most_chunks ? threads : most_chunks);
+    Index sizes[most_chunks];
+    Index* const size = sizes;
+    for_each_task(label, chunks, [=](Index chunk) {
+      const Index begin = chunk * count / chunks, end = (chunk + 1) * count / chunks;
+      Index next = begin;
+      for (Index n = begin; n < end; ++n) {
+        list(next) = n;
+        next += keep(n) ? 1 : 0;
+      }
+      size[chunk] = next - begin;
+    });
+    for (Index chunk = 0; chunk < chunks; ++chunk) {
+      const Index from = chunk * count / chunks;
+      for (Index n = 0; n < sizes[chunk]; ++n) list(total + n) = list(from + n);
+      total += sizes[chunk];
     }
-  else
+  } else {
     Kokkos::parallel_scan(
         label, Kokkos::RangePolicy<ExecutionSpace, Kokkos::IndexType<Index>>(0, count),
         KOKKOS_LAMBDA(Index n, Index & running, bool is_final) {
-          const bool kept = keep(n);
-          if (is_final) positions(n) = running;
-          if (kept) ++running;
+          if (!keep(n)) return;
+          if (is_final) list(running) = n;
+          ++running;
         },
         total);
+  }
   return total;
-}
-
-/// Whether enumerate() kept entry n, total being what it returned.
-KOKKOS_INLINE_FUNCTION bool is_kept(const Array<Index>& positions, Index n, Index count, Index total) {
-  return (n + 1 < count ? positions(n + 1) : total) > positions(n);
 }
 
 /// Largest of body(n) over 0 <= n < count, at least zero; the same for any number of threads.

@@ -79,15 +79,11 @@ void take_colors(const Round& round) {
 }
 
 /// Write those that still wait to next, in the same order; returns their number.
-Index collect_waiting(const Round& round, const Array<Index>& offsets, const Array<Index>& next) {
-  const Index number = enumerate(
-      "dem::enumerate_waiting", round.number_waiting, offsets,
+Index collect_waiting(const Round& round, const Array<Index>& kept, const Array<Index>& next) {
+  const Index number = list_where(
+      "dem::list_waiting", round.number_waiting, kept,
       KOKKOS_LAMBDA(Index m) { return round.colors(round.waiting(m)) == none; });
-  for_each(
-      "dem::collect_waiting", round.number_waiting, KOKKOS_LAMBDA(Index m) {
-        const Index n = round.waiting(m);
-        if (round.colors(n) == none) next(offsets(m)) = n;
-      });
+  for_each("dem::collect_waiting", number, KOKKOS_LAMBDA(Index m) { next(m) = round.waiting(kept(m)); });
   return number;
 }
 
@@ -98,15 +94,11 @@ int highest_color(const Round& round) {
 }
 
 /// Contacts of one color go to begin, begin + 1, ...; returns the end.
-Index place_color(const Round& round, int color, Index begin, const Array<Index>& offsets,
+Index place_color(const Round& round, int color, Index begin, const Array<Index>& kept,
                   const Array<Index>& place) {
-  const Index size = enumerate(
-      "dem::enumerate_color", round.keys.count, offsets,
-      KOKKOS_LAMBDA(Index n) { return round.colors(n) == color; });
-  for_each(
-      "dem::place_color", round.keys.count, KOKKOS_LAMBDA(Index n) {
-        if (round.colors(n) == color) place(n) = begin + offsets(n);
-      });
+  const Index size = list_where(
+      "dem::list_color", round.keys.count, kept, KOKKOS_LAMBDA(Index n) { return round.colors(n) == color; });
+  for_each("dem::place_color", size, KOKKOS_LAMBDA(Index m) { place(kept(m)) = begin + m; });
   return begin + size;
 }
 
@@ -120,7 +112,7 @@ ContactOrder ContactColoring::arrange(const ContactKeys& keys, const ParticleArr
   const auto count = static_cast<std::size_t>(keys.count);
   if (place_.extent(0) < count) {
     place_ = Array<Index>("dem.place", count + count / 4);
-    offsets_ = Array<Index>("dem.color_offsets", count + count / 4);
+    kept_ = Array<Index>("dem.kept", count + count / 4);
     waiting_ = Array<Index>("dem.waiting", count + count / 4);
     colors_ = Array<int>("dem.colors", count + count / 4);
   }
@@ -141,7 +133,7 @@ ContactOrder ContactColoring::arrange(const ContactKeys& keys, const ParticleArr
   while (round.number_waiting > 0) {
     bid(round);
     take_colors(round);
-    round.number_waiting = collect_waiting(round, offsets_, next);
+    round.number_waiting = collect_waiting(round, kept_, next);
     std::swap(round.waiting, next);
   }
 
@@ -149,7 +141,7 @@ ContactOrder ContactColoring::arrange(const ContactKeys& keys, const ParticleArr
   order.number_of_colors = highest < no_color_left ? highest + 1 : no_color_left;
   Index begin = 0;
   for (int color = 0; color <= highest; ++color) {
-    begin = place_color(round, color, begin, offsets_, place_);
+    begin = place_color(round, color, begin, kept_, place_);
     if (color < order.number_of_colors) order.color_begin[color + 1] = begin;
   }
   return order;

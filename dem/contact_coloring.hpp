@@ -16,7 +16,7 @@ class ContactColoring {
   const Array<Index>& place() const { return place_; }
 
  private:
-  Array<Index> place_, offsets_, waiting_;
+  Array<Index> place_, kept_, waiting_;
   Array<int> colors_;                                 // -1: none yet
   Array<std::uint64_t> used_colors_, best_priority_;  // per particle
 };

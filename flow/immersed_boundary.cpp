@@ -27,8 +27,7 @@ void sample_body(const SolidSampler& solid, const RegionList& regions) {
 
 /// Distance and owner of every cell in the regions: fixed solid or any of the overlapping moving bodies.
 void sample_region_cells(const SolidSampler& solid, const Field<Real>& fixed_sdf,
-                         const Field<int>& fixed_owner, const Field<std::uint8_t>& in_region,
-                         const RegionList& regions) {
+                         const Field<int>& fixed_owner, const RegionList& regions) {
   const RegionView region = regions.view();
   const SolidSampler target = solid;
   for_each(
@@ -49,7 +48,6 @@ void sample_region_cells(const SolidSampler& solid, const Field<Real>& fixed_sdf
         }
         target.sdf[p] = nearest;
         target.owner[p] = owner;
-        in_region[p] = 1;
       });
 }
 
@@ -83,61 +81,76 @@ Real half_diagonal_of(const Grid& grid) {
                          grid.spacing[2] * grid.spacing[2]);
 }
 
+/// Opens the low faces of cell (i, j, k); returns whether a wall touches them or the cell is solid.
+KOKKOS_INLINE_FUNCTION bool open_cell_faces(const SolidSampler& solid, const FaceVector<OpenFraction>& open,
+                                            int i, int j, int k, Real half_diagonal, Real viscous_area) {
+  bool touched = solid.sdf(i, j, k) < 0;
+  for (int a = 0; a < 3; ++a) {
+    const OpenFraction fraction = open_fraction_at(solid, a, i, j, k, half_diagonal, viscous_area);
+    open[a](i, j, k) = fraction;
+    touched = touched || fraction < fully_open;
+  }
+  return touched;
+}
+
 /// None of the bodies moves.
-void open_all_faces(const SolidSampler& solid, const FaceVector<OpenFraction>& open) {
+void open_all_faces(const SolidSampler& solid, const FaceVector<OpenFraction>& open,
+                    const Field<std::uint8_t>& marks) {
   const SolidSampler sampler = solid;
   const FaceVector<OpenFraction> target = open;
+  const Field<std::uint8_t> mark = marks;
   const Real half_diagonal = half_diagonal_of(solid.grid);
   for_each_cell(
       "flow::open_all_faces", RowRanges(solid.grid.cells), KOKKOS_LAMBDA(int i, int j, int k) {
-        for (int a = 0; a < 3; ++a)
-          target[a](i, j, k) = open_fraction_at(sampler, a, i, j, k, half_diagonal, 0);
+        const bool touched = open_cell_faces(sampler, target, i, j, k, half_diagonal, 0);
+        mark(i, j, k) = touched ? cell_mark::touched | cell_mark::touched_by_fixed : 0;
       });
 }
 
 void open_region_faces(const SolidSampler& solid, const FaceVector<OpenFraction>& open, Real viscous_area,
-                       const RegionList& regions) {
+                       const Field<std::uint8_t>& marks, const RegionList& regions) {
   const RegionView region = regions.view();
   const SolidSampler sampler = solid;
   const FaceVector<OpenFraction> target = open;
+  const Field<std::uint8_t> mark = marks;
   const Real half_diagonal = half_diagonal_of(solid.grid);
   for_each(
       "flow::open_region_faces", regions.number_of_cells(), KOKKOS_LAMBDA(Index n) {
         const RegionCell cell = region.cell(n);
         if (!cell.unique) return;
-        for (int a = 0; a < 3; ++a)
-          target[a](cell.i, cell.j, cell.k) =
-              open_fraction_at(sampler, a, cell.i, cell.j, cell.k, half_diagonal, viscous_area);
+        const bool touched =
+            open_cell_faces(sampler, target, cell.i, cell.j, cell.k, half_diagonal, viscous_area);
+        const Index p = mark.layout()(cell.i, cell.j, cell.k);
+        mark[p] = static_cast<std::uint8_t>((mark[p] & cell_mark::touched_by_fixed) | cell_mark::in_region |
+                                            (touched ? cell_mark::touched : 0));
       });
 }
 
-void mark_superseded(const Field<std::uint8_t>& in_region, const WallRows& rows) {
+void mark_superseded(const Field<std::uint8_t>& marks, const WallRows& rows) {
   const WallRows target = rows;
-  const Field<std::uint8_t> marks = in_region;
+  const Field<std::uint8_t> mark = marks;
   for_each(
       "flow::mark_superseded", rows.count,
-      KOKKOS_LAMBDA(Index n) { target.superseded(n) = marks[target.face(n)]; });
+      KOKKOS_LAMBDA(Index n) { target.superseded(n) = mark[target.face(n)] & cell_mark::in_region; });
 }
 
 /// Pressure of closed cells beside open ones := mean over the open neighbours.
 void extrapolate_pressure(const FaceVector<OpenFraction>& open, const DomainSides& sides,
-                          const RegionList& regions, const Field<Real>& pressure) {
-  const RegionView region = regions.view();
+                          const NearCells& near, const Field<Real>& pressure) {
+  const NearCells candidates = near;
   const FaceVector<OpenFraction> fraction = open;
   const Field<Real> p = pressure;
   const Int3 cells = pressure.layout().cells;
   const DomainSides box = sides;
   for_each(
-      "flow::extrapolate_pressure", regions.number_of_cells(), KOKKOS_LAMBDA(Index m) {
-        const RegionCell cell = region.cell(m);
-        if (!cell.unique) return;
+      "flow::extrapolate_pressure", near.count, KOKKOS_LAMBDA(Index m) {
+        const Int3 at = candidates.cell(m);
         const Layout& layout = p.layout();
-        const Index n = layout(cell.i, cell.j, cell.k);
+        const Index n = layout(at[0], at[1], at[2]);
         for (int a = 0; a < 3; ++a)
           if (fraction[a][n] || fraction[a][n + layout.stride(a)]) return;  // an open cell
         Real sum = 0;
         int count = 0;
-        const int at[3] = {cell.i, cell.j, cell.k};
         for (int d = 0; d < 6; ++d) {
           const int a = d / 2;
           int q[3] = {at[0], at[1], at[2]};
@@ -183,21 +196,31 @@ RowRanges open_row_ranges(const FaceVector<OpenFraction>& open_fractions, const 
   return rows;
 }
 
+/// What the fixed solid alone leaves.
+struct FixedGeometry {
+  Field<Real> sdf;
+  Field<int> owner;
+  FaceVector<OpenFraction> open;
+};
+
 /// The regions as the fixed solid alone left them.
-void restore_fixed(const SolidSampler& solid, const Field<Real>& fixed_sdf, const Field<int>& fixed_owner,
-                   const FaceVector<OpenFraction>& open, const FaceVector<OpenFraction>& fixed_open,
-                   const Field<std::uint8_t>& in_region, const RegionList& regions) {
+void restore_fixed(const SolidSampler& solid, const FixedGeometry& fixed,
+                   const FaceVector<OpenFraction>& open, const Field<std::uint8_t>& marks,
+                   const RegionList& regions) {
   const RegionView region = regions.view();
   const SolidSampler target = solid;
-  const FaceVector<OpenFraction> fraction = open, source = fixed_open;
+  const FixedGeometry source = fixed;
+  const FaceVector<OpenFraction> fraction = open;
+  const Field<std::uint8_t> mark = marks;
   for_each(
       "flow::restore_fixed", regions.number_of_cells(), KOKKOS_LAMBDA(Index n) {
         const RegionCell cell = region.cell(n);
         const Index p = target.sdf.layout()(cell.i, cell.j, cell.k);
-        target.sdf[p] = fixed_sdf[p];
-        target.owner[p] = fixed_owner[p];
-        for (int a = 0; a < 3; ++a) fraction[a][p] = source[a][p];
-        in_region[p] = 0;
+        target.sdf[p] = source.sdf[p];
+        target.owner[p] = source.owner[p];
+        for (int a = 0; a < 3; ++a) fraction[a][p] = source.open[a][p];
+        mark[p] =
+            mark[p] & cell_mark::touched_by_fixed ? cell_mark::touched | cell_mark::touched_by_fixed : 0;
       });
 }
 
@@ -213,14 +236,14 @@ ImmersedBoundary::ImmersedBoundary(const Grid& grid, const DomainSides& sides)
   solid_.grid = grid;
   solid_.sdf = Field<Real>("flow::sdf", layout);
   solid_.owner = Field<int>("flow::owner", layout);
-  in_region_ = Field<std::uint8_t>("flow::in_region", layout);
+  marks_ = Field<std::uint8_t>("flow::cell_marks", layout);
 }
 
 void ImmersedBoundary::build(Bodies& bodies, const Field<Real>& samples, Real viscous_area) {
   solid_.samples = samples;
   sample_fixed(bodies);
   regions_.clear();
-  in_region_.fill(0);
+  near_.count = 0;
   bool any_dynamic = false;
   for (int b = 0; b < bodies.count(); ++b) any_dynamic = any_dynamic || bodies[b].dynamic;
   if (any_dynamic) {
@@ -255,15 +278,16 @@ void ImmersedBoundary::sample_fixed(Bodies& bodies) {
   }
   fill_mirrored_ghosts(solid_.sdf, sides_);
   fill_mirrored_ghosts(solid_.owner, sides_);
-  open_all_faces(solid_, open_);
+  open_all_faces(solid_, open_, marks_);
   fill_open_ghosts(open_, solid_.sdf, sides_);
   rows_ = open_row_ranges(open_, grid_.cells);
   RegionList whole(grid_.cells);
   whole.assign({Box{{0, 0, 0}, grid_.cells}}, {no_owner});
-  const Array<Index> positions("flow::whole_grid_positions",
-                               static_cast<std::size_t>(whole.number_of_cells()));
+  const Array<Index> scratch("flow::whole_grid_scratch", static_cast<std::size_t>(whole.number_of_cells()));
+  NearCells near;
+  find_near_cells(marks_, sides_, whole, scratch, near);
   for (int c = 0; c < 3; ++c) {
-    build_wall_rows(c, solid_, open_, sides_, whole, positions, fixed_rows_[c]);
+    build_wall_rows(c, solid_, open_, sides_, near, scratch, fixed_rows_[c]);
     refresh_wall_velocity(c, solid_, fixed_rows_[c]);
   }
 }
@@ -271,8 +295,8 @@ void ImmersedBoundary::sample_fixed(Bodies& bodies) {
 void ImmersedBoundary::update(Bodies& bodies, const Field<Real>& pressure, Real viscous_area) {
   viscous_area_ = viscous_area;
   changed_ = regions_.boxes_inside();
-  if (pressure.is_allocated()) extrapolate_pressure(open_, sides_, regions_, pressure);
-  restore_fixed(solid_, fixed_sdf_, fixed_owner_, open_, fixed_open_, in_region_, regions_);
+  if (pressure.is_allocated()) extrapolate_pressure(open_, sides_, near_, pressure);
+  restore_fixed(solid_, {fixed_sdf_, fixed_owner_, fixed_open_}, open_, marks_, regions_);
   std::vector<Box> boxes;
   std::vector<int> owners;
   for (int b = 0; b < bodies.count(); ++b) {
@@ -292,20 +316,21 @@ void ImmersedBoundary::update(Bodies& bodies, const Field<Real>& pressure, Real 
 
 void ImmersedBoundary::sample_moving(const RegionList& regions) {
   const auto total = static_cast<std::size_t>(regions.number_of_cells());
-  if (scratch_.extent(0) < total) scratch_ = Array<Index>("flow::region_positions", total + total / 4);
-  sample_region_cells(solid_, fixed_sdf_, fixed_owner_, in_region_, regions);
+  if (scratch_.extent(0) < total) scratch_ = Array<Index>("flow::region_scratch", total + total / 4);
+  sample_region_cells(solid_, fixed_sdf_, fixed_owner_, regions);
   fill_mirrored_ghosts(solid_.sdf, sides_, 1);
   fill_mirrored_ghosts(solid_.owner, sides_, 1);
-  open_region_faces(solid_, open_, viscous_area_, regions);
+  open_region_faces(solid_, open_, viscous_area_, marks_, regions);
   fill_open_ghosts(open_, solid_.sdf, sides_);
+  find_near_cells(marks_, sides_, regions, scratch_, near_);
   for (int c = 0; c < 3; ++c) {
-    mark_superseded(in_region_, fixed_rows_[c]);
-    build_wall_rows(c, solid_, open_, sides_, regions, scratch_, moving_rows_[c]);
+    mark_superseded(marks_, fixed_rows_[c]);
+    build_wall_rows(c, solid_, open_, sides_, near_, scratch_, moving_rows_[c]);
     std::swap(former_slits_[c], slits_[c]);
-    build_slits(c, solid_, open_, viscous_area_, regions, scratch_, slits_[c]);
-    build_body_faces(c, solid_, open_, sides_, regions, scratch_, body_faces_[c]);
+    build_slits(c, solid_, open_, viscous_area_, near_, scratch_, slits_[c]);
+    build_body_faces(c, solid_, open_, sides_, near_, scratch_, body_faces_[c]);
   }
-  build_cut_cells(open_, regions, scratch_, cut_cells_);
+  build_cut_cells(open_, near_, scratch_, cut_cells_);
 }
 
 std::size_t ImmersedBoundary::bytes() const {

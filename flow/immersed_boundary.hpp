@@ -5,6 +5,7 @@
 #include "flow/bodies.hpp"
 #include "flow/domain_sides.hpp"
 #include "flow/moving_walls.hpp"
+#include "flow/near_cells.hpp"
 #include "flow/region_list.hpp"
 #include "flow/slits.hpp"
 #include "flow/solid_sampler.hpp"
@@ -52,9 +53,10 @@ class ImmersedBoundary {
   FaceVector<OpenFraction> open_, fixed_open_;
   Field<Real> fixed_sdf_;
   Field<int> fixed_owner_;
-  Field<std::uint8_t> in_region_;
+  Field<std::uint8_t> marks_;
   RowRanges rows_;
   RegionList regions_;
+  NearCells near_;  // of the regions
   std::vector<Box> changed_;
   Array<Index> scratch_;
   Real viscous_area_ = 0;

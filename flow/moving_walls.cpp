@@ -55,55 +55,46 @@ KOKKOS_INLINE_FUNCTION Real swept_flux(const SolidSampler& solid, const FaceVect
 }  // namespace
 
 void build_body_faces(int c, const SolidSampler& solid, const FaceVector<OpenFraction>& open,
-                      const DomainSides& sides, const RegionList& regions, const Array<Index>& scratch,
+                      const DomainSides& sides, const NearCells& near, const Array<Index>& scratch,
                       BodyFaces& faces) {
   const DomainSides box = sides;
-  const RegionView region = regions.view();
-  const FaceVector<OpenFraction> fraction = open;
-  const Layout layout = open.x.layout();
-  const Index total = regions.number_of_cells();
-  const Index kept = enumerate(
-      "flow::build_body_faces.count", total, scratch, KOKKOS_LAMBDA(Index n) {
-        const RegionCell cell = region.cell(n);
-        const int along = c == 0 ? cell.i : (c == 1 ? cell.j : cell.k);
-        return cell.unique && fraction[c][layout(cell.i, cell.j, cell.k)] == 0 &&
-               !box.is_side(c, along, layout.cells);
+  const NearCells candidates = near;
+  const Field<OpenFraction> fraction = open[c];
+  const Layout layout = fraction.layout();
+  faces.count = list_where(
+      "flow::list_body_faces", near.count, scratch, KOKKOS_LAMBDA(Index n) {
+        const Int3 cell = candidates.cell(n);
+        return fraction(cell[0], cell[1], cell[2]) == 0 && !box.is_side(c, cell[c], layout.cells);
       });
-  faces.count = kept;
-  faces.reserve(kept);
+  faces.reserve(faces.count);
   const BodyFaces target = faces;
   const SolidSampler sampler = solid;
   for_each(
-      "flow::build_body_faces", total, KOKKOS_LAMBDA(Index n) {
-        if (!is_kept(scratch, n, total, kept)) return;
-        const Index row = scratch(n);
-        const RegionCell cell = region.cell(n);
-        const Index p = layout(cell.i, cell.j, cell.k);
-        target.face(row) = p;
-        target.owner(row) = nearest_owner(sampler, c, p, sampler.grid.face_center(c, cell.i, cell.j, cell.k));
+      "flow::build_body_faces", faces.count, KOKKOS_LAMBDA(Index n) {
+        const Int3 cell = candidates.cell(scratch(n));
+        const Index p = layout(cell[0], cell[1], cell[2]);
+        target.face(n) = p;
+        target.owner(n) =
+            nearest_owner(sampler, c, p, sampler.grid.face_center(c, cell[0], cell[1], cell[2]));
       });
 }
 
-void build_cut_cells(const FaceVector<OpenFraction>& open, const RegionList& regions,
-                     const Array<Index>& scratch, CutCells& cells) {
-  const RegionView region = regions.view();
+void build_cut_cells(const FaceVector<OpenFraction>& open, const NearCells& near, const Array<Index>& scratch,
+                     CutCells& cells) {
+  const NearCells candidates = near;
   const FaceVector<OpenFraction> fraction = open;
   const Layout layout = open.x.layout();
-  const Index total = regions.number_of_cells();
-  const Index kept = enumerate(
-      "flow::build_cut_cells.count", total, scratch, KOKKOS_LAMBDA(Index n) {
-        const RegionCell cell = region.cell(n);
-        return cell.unique && is_cut(fraction, layout(cell.i, cell.j, cell.k));
+  cells.count = list_where(
+      "flow::list_cut_cells", near.count, scratch, KOKKOS_LAMBDA(Index n) {
+        const Int3 cell = candidates.cell(n);
+        return is_cut(fraction, layout(cell[0], cell[1], cell[2]));
       });
-  cells.count = kept;
-  cells.reserve(kept);
+  cells.reserve(cells.count);
   const CutCells target = cells;
   for_each(
-      "flow::build_cut_cells", total, KOKKOS_LAMBDA(Index n) {
-        if (!is_kept(scratch, n, total, kept)) return;
-        const Index row = scratch(n);
-        const RegionCell cell = region.cell(n);
-        target.cell(row) = layout(cell.i, cell.j, cell.k);
+      "flow::build_cut_cells", cells.count, KOKKOS_LAMBDA(Index n) {
+        const Int3 cell = candidates.cell(scratch(n));
+        target.cell(n) = layout(cell[0], cell[1], cell[2]);
       });
 }
 

@@ -3,7 +3,7 @@
 // surfaces sweep out of cut cells.
 #include "core/field.hpp"
 #include "flow/domain_sides.hpp"
-#include "flow/region_list.hpp"
+#include "flow/near_cells.hpp"
 #include "flow/solid_sampler.hpp"
 
 namespace peclet::flow {
@@ -31,10 +31,10 @@ struct CutCells {
 };
 
 void build_body_faces(int c, const SolidSampler& solid, const FaceVector<OpenFraction>& open,
-                      const DomainSides& sides, const RegionList& regions, const Array<Index>& scratch,
+                      const DomainSides& sides, const NearCells& near, const Array<Index>& scratch,
                       BodyFaces& faces);
-void build_cut_cells(const FaceVector<OpenFraction>& open, const RegionList& regions,
-                     const Array<Index>& scratch, CutCells& cells);
+void build_cut_cells(const FaceVector<OpenFraction>& open, const NearCells& near, const Array<Index>& scratch,
+                     CutCells& cells);
 
 /// Recompute velocities and fluxes from the present motion of the bodies.
 void refresh_body_faces(int c, const SolidSampler& solid, const BodyFaces& faces);

@@ -208,8 +208,8 @@ void build_scalar_rows(const ScalarGeometry& geometry, const Field<OpenFraction>
   const Field<OpenFraction> s = state;
   const Int3 n = state.layout().cells;
   const Index total = g.solid.grid.number_of_cells();
-  const Index kept = enumerate(
-      "flow::build_scalar_rows.count", total, scratch, KOKKOS_LAMBDA(Index m) {
+  const Index kept = list_where(
+      "flow::list_scalar_rows", total, scratch, KOKKOS_LAMBDA(Index m) {
         int cell[3];
         cell_indices(n, m, cell);
         return needs_row(g, s, cell);
@@ -218,11 +218,10 @@ void build_scalar_rows(const ScalarGeometry& geometry, const Field<OpenFraction>
   rows.links.count = kept;
   const RowBuilder builder{geometry, state, volume, rows};
   for_each(
-      "flow::build_scalar_rows", total, KOKKOS_LAMBDA(Index m) {
-        if (!is_kept(scratch, m, total, kept)) return;
+      "flow::build_scalar_rows", kept, KOKKOS_LAMBDA(Index row) {
         int cell[3];
-        cell_indices(n, m, cell);
-        builder.fill(scratch(m), cell);
+        cell_indices(n, scratch(row), cell);
+        builder.fill(row, cell);
       });
   chain_rows(state.layout(), rows.links);
 }
@@ -233,8 +232,8 @@ void build_extension(const ScalarGeometry& geometry, const Field<OpenFraction>& 
   const Field<OpenFraction> s = state;
   const Int3 n = state.layout().cells;
   const Index total = g.solid.grid.number_of_cells();
-  const Index kept = enumerate(
-      "flow::build_extension.count", total, scratch, KOKKOS_LAMBDA(Index m) {
+  const Index kept = list_where(
+      "flow::list_extension", total, scratch, KOKKOS_LAMBDA(Index m) {
         int cell[3];
         cell_indices(n, m, cell);
         const Index p = s.layout()(cell[0], cell[1], cell[2]);
@@ -249,11 +248,10 @@ void build_extension(const ScalarGeometry& geometry, const Field<OpenFraction>& 
   cells.count = kept;
   const Array<Index> target = cells.cell;
   for_each(
-      "flow::build_extension", total, KOKKOS_LAMBDA(Index m) {
-        if (!is_kept(scratch, m, total, kept)) return;
+      "flow::build_extension", kept, KOKKOS_LAMBDA(Index m) {
         int cell[3];
-        cell_indices(n, m, cell);
-        target(scratch(m)) = s.layout()(cell[0], cell[1], cell[2]);
+        cell_indices(n, scratch(m), cell);
+        target(m) = s.layout()(cell[0], cell[1], cell[2]);
       });
 }
 

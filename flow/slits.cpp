@@ -20,31 +20,28 @@ Index Slits::bytes() const {
 }
 
 void build_slits(int c, const SolidSampler& solid, const FaceVector<OpenFraction>& open, Real viscous_area,
-                 const RegionList& regions, const Array<Index>& scratch, Slits& slits) {
-  const RegionView region = regions.view();
+                 const NearCells& near, const Array<Index>& scratch, Slits& slits) {
+  const NearCells candidates = near;
   const Field<OpenFraction> fraction = open[c];
   const Real diffusion = slit_diffusion(solid.grid, c, viscous_area);
-  const Index total = regions.number_of_cells();
-  const Index kept = enumerate(
-      "flow::build_slits.count", total, scratch, KOKKOS_LAMBDA(Index n) {
-        const RegionCell cell = region.cell(n);
-        return cell.unique && is_slit(fraction(cell.i, cell.j, cell.k));
+  slits.count = list_where(
+      "flow::list_slits", near.count, scratch, KOKKOS_LAMBDA(Index n) {
+        const Int3 cell = candidates.cell(n);
+        return is_slit(fraction(cell[0], cell[1], cell[2]));
       });
-  slits.count = kept;
-  slits.reserve(kept);
+  slits.reserve(slits.count);
   const Slits target = slits;
   const SolidSampler sampler = solid;
   for_each(
-      "flow::build_slits", total, KOKKOS_LAMBDA(Index n) {
-        if (!is_kept(scratch, n, total, kept)) return;
-        const Index row = scratch(n);
-        const RegionCell cell = region.cell(n);
-        const Index p = fraction.layout()(cell.i, cell.j, cell.k);
-        target.face(row) = p;
-        target.owner(row) = nearest_owner(sampler, c, p, sampler.grid.face_center(c, cell.i, cell.j, cell.k));
+      "flow::build_slits", slits.count, KOKKOS_LAMBDA(Index n) {
+        const Int3 cell = candidates.cell(scratch(n));
+        const int i = cell[0], j = cell[1], k = cell[2];
+        const Index p = fraction.layout()(i, j, k);
+        target.face(n) = p;
+        target.owner(n) = nearest_owner(sampler, c, p, sampler.grid.face_center(c, i, j, k));
         const int low = sampler.owner[p - fraction.layout().stride(c)], high = sampler.owner[p];
-        const Real open_part = face_opening(sampler, c, cell.i, cell.j, cell.k, low, high).open;
-        target.friction(row) = slit_friction(open_part, diffusion);
+        const Real open_part = face_opening(sampler, c, i, j, k, low, high).open;
+        target.friction(n) = slit_friction(open_part, diffusion);
       });
 }
 

@@ -10,7 +10,7 @@
 //   O u + (1 - O) U = o w + (1 - o) U  with the open fraction  o = O / (1 + lambda):
 // slits are open to inertia and closed to creeping flow, for which the no-slip wall lets nothing through.
 #include "flow/momentum.hpp"
-#include "flow/region_list.hpp"
+#include "flow/near_cells.hpp"
 #include "flow/solid_sampler.hpp"
 
 namespace peclet::flow {
@@ -40,9 +40,9 @@ struct Slits {
   Index bytes() const;
 };
 
-/// Lists the slits of component c among the cells of the regions. viscous_area = nu dt.
+/// Lists the slits of component c among the cells near walls. viscous_area = nu dt.
 void build_slits(int c, const SolidSampler& solid, const FaceVector<OpenFraction>& open, Real viscous_area,
-                 const RegionList& regions, const Array<Index>& scratch, Slits& slits);
+                 const NearCells& near, const Array<Index>& scratch, Slits& slits);
 
 /// Recomputes U from the present velocities of the bodies.
 void refresh_slits(int c, const SolidSampler& solid, const Slits& slits);

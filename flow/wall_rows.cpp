@@ -18,15 +18,14 @@ void WallRows::reserve(Index capacity) {
 
 namespace {
 
-/// Weights and owners of the row of component c at the low face of cell (i, j, k).
+/// Weights and owners of the row of component c at the low face of a cell.
 KOKKOS_INLINE_FUNCTION void fill_row(const WallRows& rows, Index row, int c, const SolidSampler& solid,
                                      const FaceVector<OpenFraction>& open, const DomainSides& sides,
-                                     const RegionCell& cell) {
+                                     const Int3& at) {
   const Layout& layout = open.x.layout();
-  const Index p = layout(cell.i, cell.j, cell.k);
-  const Vec3 x = solid.grid.face_center(c, cell.i, cell.j, cell.k);
+  const Index p = layout(at[0], at[1], at[2]);
+  const Vec3 x = solid.grid.face_center(c, at[0], at[1], at[2]);
   const int nearest = nearest_owner(solid, c, p, x);
-  const int at[3] = {cell.i, cell.j, cell.k};
   int walls = 0;
   for (int a = 0; a < 3; ++a) {
     Real distance[2];
@@ -74,28 +73,24 @@ void chain_rows(const Layout& layout, WallRows& rows) {
 }
 
 void build_wall_rows(int c, const SolidSampler& solid, const FaceVector<OpenFraction>& open,
-                     const DomainSides& sides, const RegionList& regions, const Array<Index>& scratch,
+                     const DomainSides& sides, const NearCells& near, const Array<Index>& scratch,
                      WallRows& rows) {
-  const RegionView region = regions.view();
+  const NearCells candidates = near;
   const FaceVector<OpenFraction> fraction = open;
   const Layout layout = open.x.layout();
   const DomainSides box = sides;
   const SolidSampler sampler = solid;
-  rows.count = enumerate(
-      "flow::build_wall_rows.count", regions.number_of_cells(), scratch, KOKKOS_LAMBDA(Index n) {
-        const RegionCell cell = region.cell(n);
-        const Index p = layout(cell.i, cell.j, cell.k);
-        return cell.unique && is_fluid(fraction[c][p]) &&
-               touches_wall(fraction, sampler.sdf, box, c, cell.i, cell.j, cell.k);
+  rows.count = list_where(
+      "flow::list_wall_rows", near.count, scratch, KOKKOS_LAMBDA(Index n) {
+        const Int3 cell = candidates.cell(n);
+        return is_fluid(fraction[c][layout(cell[0], cell[1], cell[2])]) &&
+               touches_wall(fraction, sampler.sdf, box, c, cell[0], cell[1], cell[2]);
       });
   rows.reserve(rows.count);
   const WallRows target = rows;
-  const Index total = regions.number_of_cells();
-  const Index kept = rows.count;
   for_each(
-      "flow::build_wall_rows", total, KOKKOS_LAMBDA(Index n) {
-        if (!is_kept(scratch, n, total, kept)) return;
-        fill_row(target, scratch(n), c, sampler, fraction, box, region.cell(n));
+      "flow::build_wall_rows", rows.count, KOKKOS_LAMBDA(Index row) {
+        fill_row(target, row, c, sampler, fraction, box, candidates.cell(scratch(row)));
       });
   chain_rows(layout, rows);
 }

@@ -3,8 +3,8 @@
 #include "core/field.hpp"
 #include "core/sweep_stage.hpp"
 #include "flow/domain_sides.hpp"
+#include "flow/near_cells.hpp"
 #include "flow/open_fraction.hpp"
-#include "flow/region_list.hpp"
 #include "flow/solid_sampler.hpp"
 
 namespace peclet::flow {
@@ -83,9 +83,9 @@ KOKKOS_INLINE_FUNCTION bool touches_wall(const FaceVector<OpenFraction>& open, c
   return touched;
 }
 
-/// Lists the rows of component c among the cells of the regions (or of the whole grid when regions is null).
+/// Lists the rows of component c among the cells near walls.
 void build_wall_rows(int c, const SolidSampler& solid, const FaceVector<OpenFraction>& open,
-                     const DomainSides& sides, const RegionList& regions, const Array<Index>& scratch,
+                     const DomainSides& sides, const NearCells& near, const Array<Index>& scratch,
                      WallRows& rows);
 
 /// Chains the rows by row of cells once their faces are known.

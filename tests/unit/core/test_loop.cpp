@@ -88,20 +88,21 @@ TEST(Loop, SumsAndMaximaRespectTheRangeOfEveryRow) {
 
 TEST(Loop, TheLargestOfNegativeNumbersIsZero) { EXPECT_EQ(largest_index(RowRanges(inner), -1000), 0); }
 
-Index keep_multiples(Index count, Index step, const Array<Index>& positions) {
-  return enumerate("keep_multiples", count, positions, KOKKOS_LAMBDA(Index n) { return n % step == 0; });
+Index list_multiples(Index count, Index step, const Array<Index>& list) {
+  return list_where("list_multiples", count, list, KOKKOS_LAMBDA(Index n) { return n % step == 0; });
 }
 
-TEST(Enumerate, NumbersWhatIsKeptInOrder) {
+TEST(ListWhere, ListsWhatIsKeptInOrder) {
   for (const std::size_t count : {20, 2000}) {  // by one thread, by several
-    const Array<Index> positions("positions", count);
-    EXPECT_EQ(keep_multiples(static_cast<Index>(count), 3, positions), static_cast<Index>((count + 2) / 3));
-    const std::vector<Index> host = copy_to_host(positions);
-    for (std::size_t n = 0; n < count; ++n) EXPECT_EQ(host[n], static_cast<Index>((n + 2) / 3));
+    const Array<Index> list("list", count);
+    const Index number = list_multiples(static_cast<Index>(count), 3, list);
+    ASSERT_EQ(number, static_cast<Index>((count + 2) / 3));
+    const std::vector<Index> host = copy_to_host(list);
+    for (Index n = 0; n < number; ++n) EXPECT_EQ(host[static_cast<std::size_t>(n)], 3 * n);
   }
 }
 
-TEST(Enumerate, OfNothingIsNothing) { EXPECT_EQ(keep_multiples(0, 3, Array<Index>()), 0); }
+TEST(ListWhere, OfNothingIsNothing) { EXPECT_EQ(list_multiples(0, 3, Array<Index>()), 0); }
 
 Index triangular_numbers(Index count, const Array<Index>& offsets) {
   return exclusive_sum("triangular_numbers", count, offsets, KOKKOS_LAMBDA(Index n) { return n + 1; });
