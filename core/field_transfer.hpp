@@ -22,6 +22,16 @@ Array<T> copy_from_host(const std::string& label, const std::vector<T>& values) 
   return copy_from_host(label, values.data(), static_cast<Index>(values.size()));
 }
 
+/// Copies values for kernels into an array, which grows when it is too small.
+template <class T>
+void upload(const std::string& name, const std::vector<T>& values, Array<T>& device) {
+  if (device.extent(0) < values.size()) device = Array<T>(name, values.size() + values.size() / 2 + 16);
+  if (values.empty()) return;
+  const Kokkos::View<const T*, Kokkos::HostSpace, Kokkos::MemoryTraits<Kokkos::Unmanaged>> host(
+      values.data(), values.size());
+  Kokkos::deep_copy(Kokkos::subview(device, Kokkos::pair<std::size_t, std::size_t>(0, values.size())), host);
+}
+
 template <class T>
 void copy_to_host(const Array<T>& array, T* values) {
   Kokkos::deep_copy(Kokkos::View<T*, Kokkos::HostSpace>(values, array.extent(0)), array);

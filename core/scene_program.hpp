@@ -56,6 +56,9 @@ class SceneProgram {
   /// Signed distance in the frame of the root.
   KOKKOS_FUNCTION Real distance(int slot, Vec3 local) const { return evaluate<Real>(slots_(slot), local); }
 
+  /// Radius if the root is a sphere around the origin, else 0.
+  KOKKOS_INLINE_FUNCTION Real sphere_radius(int slot) const { return slots_(slot).centered_sphere_radius; }
+
   /// Signed distance of the placed body; far_away where it has vanished.
   KOKKOS_FUNCTION Real distance(int slot, const Pose& pose, Vec3 world) const {
     if (pose.scale == 0) return far_away;

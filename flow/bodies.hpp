@@ -34,8 +34,10 @@ struct Period {
 
   /// Nearest periodic image of a difference of two positions.
   KOKKOS_INLINE_FUNCTION Vec3 nearest(Vec3 r) const {
+    constexpr Real surely_nearest = 0.49;
     for (int a = 0; a < 3; ++a)
-      if (axis[a]) r[a] -= length[a] * Kokkos::floor(r[a] / length[a] + 0.5);
+      if (axis[a] && !(Kokkos::abs(r[a]) < surely_nearest * length[a]))
+        r[a] -= length[a] * Kokkos::floor(r[a] / length[a] + 0.5);
     return r;
   }
 };
@@ -52,10 +54,16 @@ struct BodyGeometry {
   Period box;     // of the domain: arms of rotation use it
 
   /// Signed distance of body b (negative inside), smallest over its periodic images.
-  KOKKOS_INLINE_FUNCTION Real distance(int b, Vec3 x) const {
+  KOKKOS_FORCEINLINE_FUNCTION Real distance(int b, Vec3 x) const {
     const Body& body = bodies(b);
-    if (body.pose.scale == 0) return far_away;
     const Vec3 near = body.pose.translation + images.nearest(x - body.pose.translation);
+    const Real radius = body.pose.scale * program.sphere_radius(body.slot);
+    if (radius > 0 && !body.wide) return norm(near - body.pose.translation) - radius;
+    return distance_of_shape(body, near);
+  }
+
+  KOKKOS_FUNCTION Real distance_of_shape(const Body& body, const Vec3& near) const {
+    if (body.pose.scale == 0) return far_away;
     Real d = program.distance(body.slot, body.pose, near);
     if (body.wide && !is_nearest_image(body, near, d)) d = distance_with_images(body, near, d);
     return d;

@@ -23,17 +23,17 @@ KOKKOS_INLINE_FUNCTION void read_word(const RowMasks& masks, const LevelOperator
   const Index n = shape.layout(0, j, k);
   const OpenFraction *x = op.x + n, *y = op.y + n, *z = op.z + n;
   const Index pitch_y = shape.layout.pitch_y, pitch_z = shape.layout.pitch_z;
-  const bool has_x = !shape.is_collapsed(0), has_y = !shape.is_collapsed(1), has_z = !shape.is_collapsed(2);
+  const OpenFraction used_x = op.used(0), used_y = op.used(1), used_z = op.used(2);
   Word links_x = 0, links_y = 0, links_z = 0, open = 0;
   const int begin = word * bits, end = begin + bits < shape.cells[0] ? begin + bits : shape.cells[0];
   for (int i = begin; i < end; ++i) {
-    const Word bit_x = has_x && x[i], bit_y = has_y && y[i], bit_z = has_z && z[i];
-    const Word any = bit_x | bit_y | bit_z | Word(has_x && x[i + 1]) | Word(has_y && y[i + pitch_y]) |
-                     Word(has_z && z[i + pitch_z]);
-    links_x |= bit_x << (i - begin);
-    links_y |= bit_y << (i - begin);
-    links_z |= bit_z << (i - begin);
-    open |= any << (i - begin);
+    const OpenFraction low_x = x[i] & used_x, low_y = y[i] & used_y, low_z = z[i] & used_z;
+    const OpenFraction high = (x[i + 1] & used_x) | (y[i + pitch_y] & used_y) | (z[i + pitch_z] & used_z);
+    const OpenFraction any = low_x | low_y | low_z | high;
+    links_x |= Word(low_x != 0) << (i - begin);
+    links_y |= Word(low_y != 0) << (i - begin);
+    links_z |= Word(low_z != 0) << (i - begin);
+    open |= Word(any != 0) << (i - begin);
   }
   const Index m = row * masks.words + word;
   masks.x[m] = links_x;
@@ -210,17 +210,12 @@ Box affected_cells(const LevelShape& shape, const Box& changed) {
   return box;
 }
 
-void read_faces(const RowMasks& masks, const LevelOperator<OpenFraction>& op, const Box& cells) {
-  const LevelShape& shape = masks.shape;
-  const int first_word = cells.low[0] / bits, words = (cells.high[0] - 1) / bits + 1 - first_word;
-  const Index ny = cells.extent(1);
-  for_each(
-      "flow::read_faces", ny * cells.extent(2), KOKKOS_LAMBDA(Index n) {
-        const int j = (cells.low[1] + static_cast<int>(n % ny)) % shape.cells[1];
-        const int k = (cells.low[2] + static_cast<int>(n / ny)) % shape.cells[2];
-        for (int word = first_word; word < first_word + words; ++word)
-          read_word(masks, op, masks.row(j, k), word);
-      });
+/// Boxes count words along x; along y and z they may reach beyond the box by less than its size.
+void read_words(const RowMasks& masks, const LevelOperator<OpenFraction>& op, const BoxList& boxes) {
+  const int ny = masks.shape.cells[1], nz = masks.shape.cells[2];
+  for_each_cell(
+      "flow::read_faces", boxes,
+      KOKKOS_LAMBDA(int word, int j, int k) { read_word(masks, op, masks.row(j % ny, k % nz), word); });
 }
 
 }  // namespace
@@ -249,16 +244,26 @@ void FluidRegions::reserve(Index number) {
 }
 
 void FluidRegions::find(const LevelOperator<OpenFraction>& op) {
-  read_faces(masks(), op, Box{{0, 0, 0}, shape_.cells});
+  read_faces(op, {Box{{0, 0, 0}, shape_.cells}});
   merge_runs(op);
 }
 
 void FluidRegions::update(const LevelOperator<OpenFraction>& op, const std::vector<Box>& changed) {
-  for (const Box& box : changed) {
-    const Box cells = affected_cells(shape_, box);
-    if (cells.size() > 0) read_faces(masks(), op, cells);
-  }
+  read_faces(op, changed);
   merge_runs(op);
+}
+
+void FluidRegions::read_faces(const LevelOperator<OpenFraction>& op, const std::vector<Box>& changed) {
+  std::vector<Box> boxes;
+  for (const Box& box : changed) {
+    Box words = affected_cells(shape_, box);
+    if (words.size() == 0) continue;
+    words.low[0] /= bits;
+    words.high[0] = (words.high[0] - 1) / bits + 1;
+    boxes.push_back(words);
+  }
+  words_.assign(boxes);
+  read_words(masks(), op, words_);
 }
 
 void FluidRegions::merge_runs(const LevelOperator<OpenFraction>& op) {

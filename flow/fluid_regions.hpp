@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/box_list.hpp"
 #include "flow/poisson_operator.hpp"
 
 namespace peclet::flow {
@@ -92,7 +93,10 @@ class FluidRegions {
   void reserve(Index number);
   void merge_runs(const LevelOperator<OpenFraction>& op);
 
+  void read_faces(const LevelOperator<OpenFraction>& op, const std::vector<Box>& changed);
+
   LevelShape shape_;
+  BoxList words_;  // to be read
   Array<std::uint64_t> links_x_, links_y_, links_z_, open_;
   Array<int> parent_;
   Array<Index> row_offset_;

@@ -9,6 +9,16 @@ namespace {
 
 /// Cells around a body in which it can change a distance, a face, or a stencil.
 constexpr int region_margin = 3;
+/// The same as region_margin, but as a distance in spacings: wall rows reach 1.5 cells along each axis,
+/// narrow gaps 2.
+constexpr Real band_width = 3;
+
+/// Cells around a body in which it can change a face: one that it touches, or one beside a narrow gap.
+int surface_margin(const Grid& grid) {
+  const Real3& h = grid.spacing;
+  const Real ratio = std::max({h[0], h[1], h[2]}) / grid.smallest_spacing();
+  return ratio < region_margin ? static_cast<int>(std::ceil(ratio)) : region_margin;
+}
 
 void sample_body(const SolidSampler& solid, const RegionList& regions) {
   const RegionView region = regions.view();
@@ -25,119 +35,64 @@ void sample_body(const SolidSampler& solid, const RegionList& regions) {
       });
 }
 
-/// Distance and owner of every cell in the regions: fixed solid or any of the overlapping moving bodies.
-void sample_region_cells(const SolidSampler& solid, const Field<Real>& fixed_sdf,
-                         const Field<int>& fixed_owner, const RegionList& regions) {
+/// Nearest of the moving bodies whose boxes hold a cell.
+struct NearestBody {
+  Real distance = far_away;
+  int body = no_owner;
+};
+
+KOKKOS_INLINE_FUNCTION NearestBody nearest_body(const SolidSampler& solid, const RegionView& region,
+                                                const RegionCell& cell) {
+  const Vec3 x = solid.grid.cell_center(cell.i, cell.j, cell.k);
+  NearestBody nearest;
+  for (int m = region.first_neighbor(cell.region); m < region.first_neighbor(cell.region + 1); ++m) {
+    const int other = region.neighbors(m);
+    if (other != cell.region && !region.contains(other, cell.i, cell.j, cell.k)) continue;
+    const Real d = solid.geometry.distance(region.body(other), x);
+    if (d < nearest.distance) nearest = {d, region.body(other)};
+  }
+  return nearest;
+}
+
+/// Lists the cells inside moving bodies and in the band around them, and samples distance and owner there:
+/// fixed solid or moving body.
+void sample_band(const SolidSampler& solid, const Field<Real>& fixed_sdf, const Field<int>& fixed_owner,
+                 const RegionList& regions, const Array<Index>& scratch, CellList& band) {
   const RegionView region = regions.view();
   const SolidSampler target = solid;
-  for_each(
-      "flow::sample_region_cells", regions.number_of_cells(), KOKKOS_LAMBDA(Index n) {
+  const Real3& h = solid.grid.spacing;
+  const Real width = band_width * std::max({h[0], h[1], h[2]});
+  band.count = list_where(
+      "flow::list_band", regions.number_of_cells(), scratch, KOKKOS_LAMBDA(Index n) {
         const RegionCell cell = region.cell(n);
-        if (!cell.unique) return;
+        return cell.unique && nearest_body(target, region, cell).distance <= width;
+      });
+  band.reserve(band.count);
+  const CellList cells = band;
+  for_each(
+      "flow::sample_band", band.count, KOKKOS_LAMBDA(Index n) {
+        const RegionCell cell = region.cell(scratch(n));
+        cells.listed(n) = Int3{cell.i, cell.j, cell.k};
         const Index p = target.sdf.layout()(cell.i, cell.j, cell.k);
-        const Vec3 x = target.grid.cell_center(cell.i, cell.j, cell.k);
-        Real nearest = fixed_sdf[p];
-        int owner = fixed_owner[p];
-        for (int m = region.first_neighbor(cell.region); m < region.first_neighbor(cell.region + 1); ++m) {
-          const int body = region.body(region.neighbors(m));
-          const Real d = target.geometry.distance(body, x);
-          if (d < nearest) {
-            nearest = d;
-            owner = body;
-          }
-        }
-        target.sdf[p] = nearest;
-        target.owner[p] = owner;
+        const NearestBody moving = nearest_body(target, region, cell);
+        const Real fixed = fixed_sdf[p];
+        target.sdf[p] = moving.distance < fixed ? moving.distance : fixed;
+        target.owner[p] = moving.distance < fixed ? moving.body : fixed_owner[p];
       });
 }
 
-/// Fraction of the low face of cell (i, j, k) along axis. The face is fluid where the mean distance of its
-/// two cells is not negative, and then never quite closed; else it is closed, or a slit of a moving body.
-/// viscous_area = nu dt.
-KOKKOS_INLINE_FUNCTION OpenFraction open_fraction_at(const SolidSampler& solid, int axis, int i, int j, int k,
-                                                     Real half_diagonal, Real viscous_area) {
-  const Index p = solid.sdf.layout()(i, j, k);
-  const Index q = p - solid.sdf.layout().stride(axis);
-  const Real low = solid.sdf[q], high = solid.sdf[p];
-  const bool is_solid = 0.5 * (low + high) < 0;
-  if (low > half_diagonal || high > half_diagonal) return fully_open;
-  if (low < -half_diagonal || high < -half_diagonal) return 0;
-  // what two surfaces squeeze out of a narrow gap could not pass through what the geometry leaves open
-  if (narrow_gap(solid, axis, i, j, k).share > 0) return is_solid ? OpenFraction(0) : fully_open;
-  const Real open = face_opening(solid, axis, i, j, k, solid.owner[q], solid.owner[p]).open;
-  if (is_solid) {
-    const int owner = nearest_owner(solid, axis, p, solid.grid.face_center(axis, i, j, k));
-    if (open == 0 || owner < 0 || !solid.geometry.bodies(owner).dynamic) return 0;
-    const Real friction = slit_friction(open, slit_diffusion(solid.grid, axis, viscous_area));
-    const auto slit = static_cast<OpenFraction>(open / (1 + friction) * fully_open);
-    return slit < smallest_slit ? OpenFraction(0) : OpenFraction(slit | 1);
-  }
-  const auto quantised = static_cast<OpenFraction>(2 * Kokkos::round(0.5 * open * fully_open));
-  return quantised < smallest_open_fraction ? smallest_open_fraction : quantised;
-}
-
-Real half_diagonal_of(const Grid& grid) {
-  return 0.5 * std::sqrt(grid.spacing[0] * grid.spacing[0] + grid.spacing[1] * grid.spacing[1] +
-                         grid.spacing[2] * grid.spacing[2]);
-}
-
-/// Opens the low faces of cell (i, j, k); returns whether a wall touches them or the cell is solid.
-KOKKOS_INLINE_FUNCTION bool open_cell_faces(const SolidSampler& solid, const FaceVector<OpenFraction>& open,
-                                            int i, int j, int k, Real half_diagonal, Real viscous_area) {
-  bool touched = solid.sdf(i, j, k) < 0;
-  for (int a = 0; a < 3; ++a) {
-    const OpenFraction fraction = open_fraction_at(solid, a, i, j, k, half_diagonal, viscous_area);
-    open[a](i, j, k) = fraction;
-    touched = touched || fraction < fully_open;
-  }
-  return touched;
-}
-
-/// None of the bodies moves.
-void open_all_faces(const SolidSampler& solid, const FaceVector<OpenFraction>& open,
-                    const Field<std::uint8_t>& marks) {
-  const SolidSampler sampler = solid;
-  const FaceVector<OpenFraction> target = open;
-  const Field<std::uint8_t> mark = marks;
-  const Real half_diagonal = half_diagonal_of(solid.grid);
-  for_each_cell(
-      "flow::open_all_faces", RowRanges(solid.grid.cells), KOKKOS_LAMBDA(int i, int j, int k) {
-        const bool touched = open_cell_faces(sampler, target, i, j, k, half_diagonal, 0);
-        mark(i, j, k) = touched ? cell_mark::touched | cell_mark::touched_by_fixed : 0;
-      });
-}
-
-void open_region_faces(const SolidSampler& solid, const FaceVector<OpenFraction>& open, Real viscous_area,
-                       const Field<std::uint8_t>& marks, const RegionList& regions) {
-  const RegionView region = regions.view();
-  const SolidSampler sampler = solid;
-  const FaceVector<OpenFraction> target = open;
-  const Field<std::uint8_t> mark = marks;
-  const Real half_diagonal = half_diagonal_of(solid.grid);
-  for_each(
-      "flow::open_region_faces", regions.number_of_cells(), KOKKOS_LAMBDA(Index n) {
-        const RegionCell cell = region.cell(n);
-        if (!cell.unique) return;
-        const bool touched =
-            open_cell_faces(sampler, target, cell.i, cell.j, cell.k, half_diagonal, viscous_area);
-        const Index p = mark.layout()(cell.i, cell.j, cell.k);
-        mark[p] = static_cast<std::uint8_t>((mark[p] & cell_mark::touched_by_fixed) | cell_mark::in_region |
-                                            (touched ? cell_mark::touched : 0));
-      });
-}
-
-void mark_superseded(const Field<std::uint8_t>& marks, const WallRows& rows) {
+void mark_superseded(const Field<int>& marks, const WallRows& rows) {
   const WallRows target = rows;
-  const Field<std::uint8_t> mark = marks;
+  const Field<int> mark = marks;
   for_each(
       "flow::mark_superseded", rows.count,
-      KOKKOS_LAMBDA(Index n) { target.superseded(n) = mark[target.face(n)] & cell_mark::in_region; });
+      KOKKOS_LAMBDA(Index n) { target.superseded(n) = mark[target.face(n)] & cell_mark::in_band; });
 }
 
 /// Pressure of closed cells beside open ones := mean over the open neighbours.
 void extrapolate_pressure(const FaceVector<OpenFraction>& open, const DomainSides& sides,
-                          const NearCells& near, const Field<Real>& pressure) {
-  const NearCells candidates = near;
+                          const CellList& near, const Field<Real>& pressure) {
+  const CellList candidates = near;
   const FaceVector<OpenFraction> fraction = open;
   const Field<Real> p = pressure;
   const Int3 cells = pressure.layout().cells;
@@ -196,6 +151,24 @@ RowRanges open_row_ranges(const FaceVector<OpenFraction>& open_fractions, const 
   return rows;
 }
 
+/// Points of component c that are fluid in fixed and not in open, less those the other way round.
+Real count_covered_points(int c, const Field<OpenFraction>& open, const Field<OpenFraction>& fixed,
+                          const DomainSides& sides, const CellList& near) {
+  const Field<OpenFraction> now = open, before = fixed;
+  const CellList candidates = near;
+  const Layout layout = open.layout();
+  const bool has_points_on_side = sides.side[c][1].kind == SideKind::Outflow;
+  return sum_each(
+      "flow::count_covered_points", near.count, KOKKOS_LAMBDA(Index n) {
+        const Int3 cell = candidates.cell(n);
+        const Index p = layout(cell[0], cell[1], cell[2]), next = p + layout.stride(c);
+        int covered = is_fluid(before[p]) - is_fluid(now[p]);
+        if (has_points_on_side && cell[c] + 1 == layout.cells[c])
+          covered += is_fluid(before[next]) - is_fluid(now[next]);
+        return static_cast<Real>(covered);
+      });
+}
+
 /// What the fixed solid alone leaves.
 struct FixedGeometry {
   Field<Real> sdf;
@@ -203,19 +176,18 @@ struct FixedGeometry {
   FaceVector<OpenFraction> open;
 };
 
-/// The regions as the fixed solid alone left them.
+/// The band as the fixed solid alone left it.
 void restore_fixed(const SolidSampler& solid, const FixedGeometry& fixed,
-                   const FaceVector<OpenFraction>& open, const Field<std::uint8_t>& marks,
-                   const RegionList& regions) {
-  const RegionView region = regions.view();
+                   const FaceVector<OpenFraction>& open, const Field<int>& marks, const CellList& band) {
+  const CellList cells = band;
   const SolidSampler target = solid;
   const FixedGeometry source = fixed;
   const FaceVector<OpenFraction> fraction = open;
-  const Field<std::uint8_t> mark = marks;
+  const Field<int> mark = marks;
   for_each(
-      "flow::restore_fixed", regions.number_of_cells(), KOKKOS_LAMBDA(Index n) {
-        const RegionCell cell = region.cell(n);
-        const Index p = target.sdf.layout()(cell.i, cell.j, cell.k);
+      "flow::restore_fixed", band.count, KOKKOS_LAMBDA(Index n) {
+        const Int3 cell = cells.cell(n);
+        const Index p = target.sdf.layout()(cell[0], cell[1], cell[2]);
         target.sdf[p] = source.sdf[p];
         target.owner[p] = source.owner[p];
         for (int a = 0; a < 3; ++a) fraction[a][p] = source.open[a][p];
@@ -236,14 +208,15 @@ ImmersedBoundary::ImmersedBoundary(const Grid& grid, const DomainSides& sides)
   solid_.grid = grid;
   solid_.sdf = Field<Real>("flow::sdf", layout);
   solid_.owner = Field<int>("flow::owner", layout);
-  marks_ = Field<std::uint8_t>("flow::cell_marks", layout);
+  marks_ = Field<int>("flow::cell_marks", layout);
 }
 
 void ImmersedBoundary::build(Bodies& bodies, const Field<Real>& samples, Real viscous_area) {
   solid_.samples = samples;
   sample_fixed(bodies);
   regions_.clear();
-  near_.count = 0;
+  surfaces_.clear();
+  band_.count = near_.count = 0;
   bool any_dynamic = false;
   for (int b = 0; b < bodies.count(); ++b) any_dynamic = any_dynamic || bodies[b].dynamic;
   if (any_dynamic) {
@@ -278,13 +251,12 @@ void ImmersedBoundary::sample_fixed(Bodies& bodies) {
   }
   fill_mirrored_ghosts(solid_.sdf, sides_);
   fill_mirrored_ghosts(solid_.owner, sides_);
-  open_all_faces(solid_, open_, marks_);
+  open_fixed_faces(FaceOpener(solid_, 0), open_, marks_);
   fill_open_ghosts(open_, solid_.sdf, sides_);
   rows_ = open_row_ranges(open_, grid_.cells);
-  RegionList whole(grid_.cells);
-  whole.assign({Box{{0, 0, 0}, grid_.cells}}, {no_owner});
-  const Array<Index> scratch("flow::whole_grid_scratch", static_cast<std::size_t>(whole.number_of_cells()));
-  NearCells near;
+  const CellList whole = CellList::of_grid(grid_.cells);
+  const Array<Index> scratch("flow::whole_grid_scratch", static_cast<std::size_t>(whole.count));
+  CellList near;
   find_near_cells(marks_, sides_, whole, scratch, near);
   for (int c = 0; c < 3; ++c) {
     build_wall_rows(c, solid_, open_, sides_, near, scratch, fixed_rows_[c]);
@@ -294,35 +266,50 @@ void ImmersedBoundary::sample_fixed(Bodies& bodies) {
 
 void ImmersedBoundary::update(Bodies& bodies, const Field<Real>& pressure, Real viscous_area) {
   viscous_area_ = viscous_area;
-  changed_ = regions_.boxes_inside();
   if (pressure.is_allocated()) extrapolate_pressure(open_, sides_, near_, pressure);
-  restore_fixed(solid_, {fixed_sdf_, fixed_owner_, fixed_open_}, open_, marks_, regions_);
-  std::vector<Box> boxes;
+  const bool had_regions = !regions_.empty();
+  const int margin = surface_margin(grid_);
+  std::vector<Box> boxes, surfaces;
   std::vector<int> owners;
   for (int b = 0; b < bodies.count(); ++b) {
     if (!bodies[b].dynamic) continue;
-    const Box box = bodies.region(b, region_margin);
+    const Box box = bodies.region(b, region_margin), surface = bodies.region(b, margin);
+    if (surface.size() > 0) surfaces.push_back(surface);
     if (box.size() == 0) continue;
     boxes.push_back(box);
     owners.push_back(b);
   }
   regions_.assign(boxes, owners);
-  const auto now = regions_.boxes_inside();
-  changed_.insert(changed_.end(), now.begin(), now.end());
+  changed_ = cut_inside(joined(surfaces_, surfaces), grid_.cells);
+  surfaces_ = surfaces;
+  restore_fixed(solid_, {fixed_sdf_, fixed_owner_, fixed_open_}, open_, marks_, band_);
   solid_.geometry = bodies.geometry();
-  if (!changed_.empty()) sample_moving(regions_);
+  if (had_regions || !regions_.empty()) sample_moving();
   refresh_velocity(bodies);
 }
 
-void ImmersedBoundary::sample_moving(const RegionList& regions) {
-  const auto total = static_cast<std::size_t>(regions.number_of_cells());
+/// Whether ghosts depend on cells of the regions.
+bool ImmersedBoundary::reaches_sides() const {
+  for (const Box& box : regions_.boxes())
+    for (int a = 0; a < 3; ++a)
+      if (box.low[a] < Layout::ghost_width || box.high[a] > grid_.cells[a] - Layout::ghost_width) return true;
+  return false;
+}
+
+void ImmersedBoundary::sample_moving() {
+  const auto total = static_cast<std::size_t>(regions_.number_of_cells());
   if (scratch_.extent(0) < total) scratch_ = Array<Index>("flow::region_scratch", total + total / 4);
-  sample_region_cells(solid_, fixed_sdf_, fixed_owner_, regions);
-  fill_mirrored_ghosts(solid_.sdf, sides_, 1);
-  fill_mirrored_ghosts(solid_.owner, sides_, 1);
-  open_region_faces(solid_, open_, viscous_area_, marks_, regions);
-  fill_open_ghosts(open_, solid_.sdf, sides_);
-  find_near_cells(marks_, sides_, regions, scratch_, near_);
+  const bool reaches = reaches_sides(), has_ghosts = reaches || reached_sides_;
+  reached_sides_ = reaches;
+  sample_band(solid_, fixed_sdf_, fixed_owner_, regions_, scratch_, band_);
+  if (has_ghosts) {
+    fill_mirrored_ghosts(solid_.sdf, sides_, 1);
+    fill_mirrored_ghosts(solid_.owner, sides_, 1);
+  }
+  open_moving_faces(FaceOpener(solid_, viscous_area_), band_, open_, marks_);
+  if (has_ghosts) fill_open_ghosts(open_, solid_.sdf, sides_);
+  find_near_cells(marks_, sides_, band_, scratch_, near_);
+  number_near_cells(near_, marks_);
   for (int c = 0; c < 3; ++c) {
     mark_superseded(marks_, fixed_rows_[c]);
     build_wall_rows(c, solid_, open_, sides_, near_, scratch_, moving_rows_[c]);
@@ -330,26 +317,34 @@ void ImmersedBoundary::sample_moving(const RegionList& regions) {
     build_slits(c, solid_, open_, viscous_area_, near_, scratch_, slits_[c]);
     build_body_faces(c, solid_, open_, sides_, near_, scratch_, body_faces_[c]);
   }
-  build_cut_cells(open_, near_, scratch_, cut_cells_);
+  build_cut_cells(open_, sides_, near_, scratch_, cut_cells_);
+}
+
+Real ImmersedBoundary::covered_points(int c) const {
+  return near_.count == 0 ? 0 : count_covered_points(c, open_[c], fixed_open_[c], sides_, near_);
 }
 
 std::size_t ImmersedBoundary::bytes() const {
   const Index cells = Layout(grid_.cells).size;
-  Index total = cells * static_cast<Index>(3 * sizeof(OpenFraction) + sizeof(Real) + sizeof(int) + 1);
+  Index total = cells * static_cast<Index>(3 * sizeof(OpenFraction) + sizeof(Real) + 2 * sizeof(int));
   if (fixed_sdf_.is_allocated())
     total += cells * static_cast<Index>(3 * sizeof(OpenFraction) + sizeof(Real) + sizeof(int));
   for (int c = 0; c < 3; ++c) total += fixed_rows_[c].bytes() + moving_rows_[c].bytes() + slits_[c].bytes();
   return static_cast<std::size_t>(total);
 }
 
-void ImmersedBoundary::refresh_velocity(Bodies& bodies) {
+void ImmersedBoundary::refresh_face_velocity(Bodies& bodies) {
   solid_.geometry = bodies.geometry();
   for (int c = 0; c < 3; ++c) {
-    refresh_wall_velocity(c, solid_, moving_rows_[c]);
     refresh_slits(c, solid_, slits_[c]);
     refresh_body_faces(c, solid_, body_faces_[c]);
   }
-  refresh_cut_cells(solid_, open_, sides_, cut_cells_);
+}
+
+void ImmersedBoundary::refresh_velocity(Bodies& bodies) {
+  refresh_face_velocity(bodies);
+  for (int c = 0; c < 3; ++c) refresh_wall_velocity(c, solid_, moving_rows_[c]);
+  refresh_cut_cells(solid_, open_, sides_, near_, marks_, cut_cells_);
 }
 
 }  // namespace peclet::flow

@@ -6,6 +6,7 @@
 #include "flow/domain_sides.hpp"
 #include "flow/moving_walls.hpp"
 #include "flow/near_cells.hpp"
+#include "flow/open_faces.hpp"
 #include "flow/region_list.hpp"
 #include "flow/slits.hpp"
 #include "flow/solid_sampler.hpp"
@@ -25,6 +26,8 @@ class ImmersedBoundary {
   void update(Bodies& bodies, const Field<Real>& pressure, Real viscous_area);
   /// Only the velocities of the bodies changed.
   void refresh_velocity(Bodies& bodies);
+  /// The same for closed faces and slits alone, before a geometry update.
+  void refresh_face_velocity(Bodies& bodies);
 
   const FaceVector<OpenFraction>& open() const { return open_; }
   const WallRows& fixed_rows(int c) const { return fixed_rows_[c]; }
@@ -39,13 +42,16 @@ class ImmersedBoundary {
   const RowRanges& rows() const { return rows_; }
   /// Cells whose faces changed in the last update.
   const std::vector<Box>& changed() const { return changed_; }
+  /// Fluid points of component c of the fixed geometry that are none now.
+  Real covered_points(int c) const;
   bool has_slits() const { return slits_[0].count + slits_[1].count + slits_[2].count > 0; }
   Real viscous_area() const { return viscous_area_; }
   std::size_t bytes() const;
 
  private:
   void sample_fixed(Bodies& bodies);
-  void sample_moving(const RegionList& regions);
+  void sample_moving();
+  bool reaches_sides() const;
 
   Grid grid_;
   DomainSides sides_;
@@ -53,11 +59,12 @@ class ImmersedBoundary {
   FaceVector<OpenFraction> open_, fixed_open_;
   Field<Real> fixed_sdf_;
   Field<int> fixed_owner_;
-  Field<std::uint8_t> marks_;
+  Field<int> marks_;
   RowRanges rows_;
   RegionList regions_;
-  NearCells near_;  // of the regions
-  std::vector<Box> changed_;
+  CellList band_, near_;                 // near_ is part of band_
+  std::vector<Box> surfaces_, changed_;  // surfaces_: one box per region
+  bool reached_sides_ = false;
   Array<Index> scratch_;
   Real viscous_area_ = 0;
   WallRows fixed_rows_[3], moving_rows_[3];

@@ -19,6 +19,13 @@ void CutCells::reserve(Index capacity) {
   wall_flux = Array<Real>("flow::cut_cells.wall_flux", n + n / 4);
 }
 
+void CutCells::reserve_faces(Index near_cells) {
+  const auto n = static_cast<std::size_t>(3 * near_cells);
+  if (face.extent(0) >= n) return;
+  face = Array<Index>("flow::cut_cells.face", n + n / 4);
+  swept = Array<Real>("flow::cut_cells.swept", n + n / 4);
+}
+
 namespace {
 
 KOKKOS_INLINE_FUNCTION bool is_cut(const FaceVector<OpenFraction>& open, Index n) {
@@ -55,10 +62,10 @@ KOKKOS_INLINE_FUNCTION Real swept_flux(const SolidSampler& solid, const FaceVect
 }  // namespace
 
 void build_body_faces(int c, const SolidSampler& solid, const FaceVector<OpenFraction>& open,
-                      const DomainSides& sides, const NearCells& near, const Array<Index>& scratch,
+                      const DomainSides& sides, const CellList& near, const Array<Index>& scratch,
                       BodyFaces& faces) {
   const DomainSides box = sides;
-  const NearCells candidates = near;
+  const CellList candidates = near;
   const Field<OpenFraction> fraction = open[c];
   const Layout layout = fraction.layout();
   faces.count = list_where(
@@ -79,11 +86,21 @@ void build_body_faces(int c, const SolidSampler& solid, const FaceVector<OpenFra
       });
 }
 
-void build_cut_cells(const FaceVector<OpenFraction>& open, const NearCells& near, const Array<Index>& scratch,
-                     CutCells& cells) {
-  const NearCells candidates = near;
+void build_cut_cells(const FaceVector<OpenFraction>& open, const DomainSides& sides, const CellList& near,
+                     const Array<Index>& scratch, CutCells& cells) {
+  const CellList candidates = near;
   const FaceVector<OpenFraction> fraction = open;
+  const DomainSides box = sides;
   const Layout layout = open.x.layout();
+  cells.reserve_faces(near.count);
+  cells.faces = list_where(
+      "flow::list_swept_faces", 3 * near.count, cells.face, KOKKOS_LAMBDA(Index n) {
+        const Int3 cell = candidates.cell(n / 3);
+        const int a = static_cast<int>(n % 3);
+        const Index p = layout(cell[0], cell[1], cell[2]);
+        return fraction[a][p] < fully_open && !box.is_side(a, cell[a], layout.cells) &&
+               (is_cut(fraction, p) || is_cut(fraction, p - layout.stride(a)));
+      });
   cells.count = list_where(
       "flow::list_cut_cells", near.count, scratch, KOKKOS_LAMBDA(Index n) {
         const Int3 cell = candidates.cell(n);
@@ -111,24 +128,53 @@ void refresh_body_faces(int c, const SolidSampler& solid, const BodyFaces& faces
       });
 }
 
-void refresh_cut_cells(const SolidSampler& solid, const FaceVector<OpenFraction>& open,
-                       const DomainSides& sides, const CutCells& cells) {
+/// Flux of the closed part of the low face along axis of a cell with this mark; walls beyond the regions
+/// rest.
+KOKKOS_INLINE_FUNCTION Real swept_by_wall(const CutCells& cells, int mark, int axis) {
+  const int n = near_index(mark);
+  return n < 0 ? 0.0 : cells.swept(3 * static_cast<Index>(n) + axis);
+}
+
+void sweep_faces(const SolidSampler& solid, const FaceVector<OpenFraction>& open, const CellList& near,
+                 const CutCells& cells) {
   const CutCells target = cells;
-  const DomainSides box = sides;
+  const CellList candidates = near;
   const SolidSampler sampler = solid;
   const FaceVector<OpenFraction> fraction = open;
   for_each(
+      "flow::sweep_faces", cells.faces, KOKKOS_LAMBDA(Index n) {
+        const Index face = target.face(n);
+        const Int3 cell = candidates.cell(face / 3);
+        target.swept(face) =
+            swept_flux(sampler, fraction, static_cast<int>(face % 3), cell[0], cell[1], cell[2]);
+      });
+}
+
+void refresh_cut_cells(const SolidSampler& solid, const FaceVector<OpenFraction>& open,
+                       const DomainSides& sides, const CellList& near, const Field<int>& marks,
+                       const CutCells& cells) {
+  sweep_faces(solid, open, near, cells);
+  const CutCells target = cells;
+  const DomainSides box = sides;
+  const Grid grid = solid.grid;
+  const FaceVector<OpenFraction> fraction = open;
+  const Field<int> mark = marks;
+  for_each(
       "flow::refresh_cut_cells", cells.count, KOKKOS_LAMBDA(Index n) {
-        const Int3 cell = cell_of(fraction.x.layout(), target.cell(n));
-        const int i = cell[0], j = cell[1], k = cell[2];
+        const Layout& layout = mark.layout();
+        const Index p = target.cell(n);
+        const Int3 cell = cell_of(layout, p);
         Real flux = 0;
         for (int a = 0; a < 3; ++a) {
-          const Real high = box.is_side(a, cell[a] + 1, sampler.grid.cells)
-                                ? 0.0
-                                : swept_flux(sampler, fraction, a, i + (a == 0), j + (a == 1), k + (a == 2));
-          const Real low =
-              box.is_side(a, cell[a], sampler.grid.cells) ? 0.0 : swept_flux(sampler, fraction, a, i, j, k);
-          flux += (high - low) / sampler.grid.spacing[a];
+          const Index next = p + layout.stride(a);
+          const Index owner = cell[a] + 1 < grid.cells[a] ? next : next - grid.cells[a] * layout.stride(a);
+          const Real low = fraction[a][p] < fully_open && !box.is_side(a, cell[a], grid.cells)
+                               ? swept_by_wall(target, mark[p], a)
+                               : 0.0;
+          const Real high = fraction[a][next] < fully_open && !box.is_side(a, cell[a] + 1, grid.cells)
+                                ? swept_by_wall(target, mark[owner], a)
+                                : 0.0;
+          flux += (high - low) / grid.spacing[a];
         }
         target.wall_flux(n) = flux;
       });

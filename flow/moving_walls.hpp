@@ -27,19 +27,25 @@ struct CutCells {
   Array<Index> cell;
   Array<Real> wall_flux;  // outward flux of the closed parts of all six faces per cell volume
 
+  Index faces = 0;    // between cut cells or beside one, closed in part or whole
+  Array<Index> face;  // 3 n + a: the low face along a of the near cell n
+  Array<Real> swept;  // flux of the closed part of face 3 n + a, per area
+
   void reserve(Index capacity);
+  void reserve_faces(Index near_cells);
 };
 
 void build_body_faces(int c, const SolidSampler& solid, const FaceVector<OpenFraction>& open,
-                      const DomainSides& sides, const NearCells& near, const Array<Index>& scratch,
+                      const DomainSides& sides, const CellList& near, const Array<Index>& scratch,
                       BodyFaces& faces);
-void build_cut_cells(const FaceVector<OpenFraction>& open, const NearCells& near, const Array<Index>& scratch,
-                     CutCells& cells);
+void build_cut_cells(const FaceVector<OpenFraction>& open, const DomainSides& sides, const CellList& near,
+                     const Array<Index>& scratch, CutCells& cells);
 
 /// Recompute velocities and fluxes from the present motion of the bodies.
 void refresh_body_faces(int c, const SolidSampler& solid, const BodyFaces& faces);
 void refresh_cut_cells(const SolidSampler& solid, const FaceVector<OpenFraction>& open,
-                       const DomainSides& sides, const CutCells& cells);
+                       const DomainSides& sides, const CellList& near, const Field<int>& marks,
+                       const CutCells& cells);
 
 /// velocity[face] = value, for the first count faces.
 void impose_values(Index count, const Array<Index>& faces, const Array<Real>& values,

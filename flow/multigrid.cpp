@@ -28,7 +28,7 @@ struct Range {
 /// or in two that are parted by a periodic side.
 std::vector<Range> changed_cells(const LevelShape& finest, const Box& box, int axis) {
   const int n = finest.cells[axis];
-  int low = box.low[axis] - 2, high = box.high[axis] + 2;
+  int low = box.low[axis] - 1, high = box.high[axis] + 1;
   if (!finest.sides.is_periodic(axis)) return {{std::max(low, 0), std::min(high, n)}};
   if (high - low >= n) return {{0, n}};
   const int shift = low >= 0 ? -(low / n) * n : (n - 1 - low) / n * n;
@@ -157,19 +157,19 @@ void BasicMultigrid<reactive>::set_open_fractions(const FaceVector<OpenFraction>
 }
 
 template <bool reactive>
-void BasicMultigrid<reactive>::update(const std::vector<Box>& changed) const {
+void BasicMultigrid<reactive>::update(const std::vector<Box>& changed) {
   const std::vector<Box> pieces = pieces_inside(levels_[0].shape, changed);
   for (std::size_t l = 1; l < levels_.size(); ++l) {
     const LevelShape& shape = levels_[l].shape;
-    for (const Box& piece : pieces) {
-      const Box cells = covering_cells(shape, piece);
-      if (l == 1)
-        derive_coefficients<OpenFraction>(finest_, shape, cells, levels_[l].coefficients);
-      else
-        derive_coefficients<float>(levels_[l - 1].op, shape, cells, levels_[l].coefficients);
-      if constexpr (reactive)
-        derive_reaction(levels_[l - 1].shape, levels_[l - 1].reaction, shape, cells, levels_[l].reaction);
-    }
+    std::vector<Box> boxes;
+    for (const Box& piece : pieces) boxes.push_back(covering_cells(shape, piece));
+    changed_.assign(boxes);
+    if (l == 1)
+      derive_coefficients<OpenFraction>(finest_, shape, changed_, levels_[l].coefficients);
+    else
+      derive_coefficients<float>(levels_[l - 1].op, shape, changed_, levels_[l].coefficients);
+    if constexpr (reactive)
+      derive_reaction(levels_[l - 1].shape, levels_[l - 1].reaction, shape, changed_, levels_[l].reaction);
   }
   set_coarse_operator();
 }

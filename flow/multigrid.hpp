@@ -29,7 +29,7 @@ class BasicMultigrid {
   /// The part of the reaction that is in proportion to the volume, for a finest cell.
   void set_volume_reaction(Real value) { levels_[0].reaction.finest_volume = value; }
   /// Derives the coarse faces anew that depend on the faces of cells in the boxes.
-  void update(const std::vector<Box>& changed) const;
+  void update(const std::vector<Box>& changed);
 
   /// Right-hand side and result of the V-cycle; zero in cells without an open face.
   const Field<float>& residual() const { return levels_[0].fields.rhs; }
@@ -64,6 +64,7 @@ class BasicMultigrid {
   Operator<OpenFraction> finest_;
   FaceVector<OpenFraction> open_;
   std::vector<Level> levels_;
+  BoxList changed_;  // of one level
   CoarseSolver coarse_solver_;
 };
 

@@ -6,8 +6,7 @@ namespace {
 /// Whether a wall touches one of the faces that the stencils of the low faces of cell (i, j, k) and its
 /// balance of volume see; they are the low faces of the cell, of its six neighbours, and of those across the
 /// edges between a high and a low neighbour. Cells beside sides always count.
-KOKKOS_INLINE_FUNCTION bool is_near(const Field<std::uint8_t>& marks, const DomainSides& sides, int i, int j,
-                                    int k) {
+KOKKOS_INLINE_FUNCTION bool is_near(const Field<int>& marks, const DomainSides& sides, int i, int j, int k) {
   const Layout& layout = marks.layout();
   const Index p = layout(i, j, k);
   const int at[3] = {i, j, k};
@@ -27,23 +26,30 @@ KOKKOS_INLINE_FUNCTION bool is_near(const Field<std::uint8_t>& marks, const Doma
 
 }  // namespace
 
-void find_near_cells(const Field<std::uint8_t>& marks, const DomainSides& sides, const RegionList& regions,
-                     const Array<Index>& scratch, NearCells& near) {
-  const RegionView region = regions.view();
-  const Field<std::uint8_t> mark = marks;
+void find_near_cells(const Field<int>& marks, const DomainSides& sides, const CellList& cells,
+                     const Array<Index>& scratch, CellList& near) {
+  const CellList candidates = cells;
+  const Field<int> mark = marks;
   const DomainSides box = sides;
   near.count = list_where(
-      "flow::list_near_cells", regions.number_of_cells(), scratch, KOKKOS_LAMBDA(Index n) {
-        const RegionCell cell = region.cell(n);
-        return cell.unique && is_near(mark, box, cell.i, cell.j, cell.k);
+      "flow::list_near_cells", cells.count, scratch, KOKKOS_LAMBDA(Index n) {
+        const Int3 cell = candidates.cell(n);
+        return is_near(mark, box, cell[0], cell[1], cell[2]);
       });
-  const auto size = static_cast<std::size_t>(near.count);
-  if (near.cell.extent(0) < size) near.cell = Array<Int3>("flow::near_cells", size + size / 4);
-  const NearCells target = near;
+  near.reserve(near.count);
+  const CellList target = near;
   for_each(
-      "flow::find_near_cells", near.count, KOKKOS_LAMBDA(Index n) {
-        const RegionCell cell = region.cell(scratch(n));
-        target.cell(n) = Int3{cell.i, cell.j, cell.k};
+      "flow::find_near_cells", near.count,
+      KOKKOS_LAMBDA(Index n) { target.listed(n) = candidates.cell(scratch(n)); });
+}
+
+void number_near_cells(const CellList& near, const Field<int>& marks) {
+  const CellList source = near;
+  const Field<int> mark = marks;
+  for_each(
+      "flow::number_near_cells", near.count, KOKKOS_LAMBDA(Index n) {
+        const Int3 cell = source.cell(n);
+        mark(cell[0], cell[1], cell[2]) += cell_mark::first_number * static_cast<int>(n + 1);
       });
 }
 

@@ -30,11 +30,11 @@ KOKKOS_INLINE_FUNCTION float coarse_coefficient(const LevelOperator<Coefficient>
 }  // namespace
 
 template <class Coefficient>
-void derive_coefficients(const LevelOperator<Coefficient>& fine, const LevelShape& coarse, const Box& box,
-                         const FaceVector<float>& coefficients) {
+void derive_coefficients(const LevelOperator<Coefficient>& fine, const LevelShape& coarse,
+                         const BoxList& boxes, const FaceVector<float>& coefficients) {
   const FaceVector<float> c = coefficients;
   for_each_cell(
-      "flow::coarsen", box, KOKKOS_LAMBDA(int i, int j, int k) {
+      "flow::coarsen", boxes, KOKKOS_LAMBDA(int i, int j, int k) {
         const Int3 cell{i, j, k};
         for (int axis = 0; axis < 3; ++axis) {
           Int3 face = cell;
@@ -45,13 +45,13 @@ void derive_coefficients(const LevelOperator<Coefficient>& fine, const LevelShap
       });
 }
 
-template void derive_coefficients(const LevelOperator<OpenFraction>&, const LevelShape&, const Box&,
+template void derive_coefficients(const LevelOperator<OpenFraction>&, const LevelShape&, const BoxList&,
                                   const FaceVector<float>&);
-template void derive_coefficients(const LevelOperator<float>&, const LevelShape&, const Box&,
+template void derive_coefficients(const LevelOperator<float>&, const LevelShape&, const BoxList&,
                                   const FaceVector<float>&);
 
 void derive_reaction(const LevelShape& fine, const LevelReaction& fine_reaction, const LevelShape& coarse,
-                     const Box& box, const LevelReaction& coarse_reaction) {
+                     const BoxList& boxes, const LevelReaction& coarse_reaction) {
   const LevelReaction from = fine_reaction, to = coarse_reaction;
   const LevelShape fine_shape = fine;
   const Real size = std::cbrt(static_cast<Real>(fine.factor[0]) * fine.factor[1] * fine.factor[2]);
@@ -59,7 +59,7 @@ void derive_reaction(const LevelShape& fine, const LevelReaction& fine_reaction,
   Int3 ratio;
   for (int axis = 0; axis < 3; ++axis) ratio[axis] = coarse.factor[axis] / fine.factor[axis];
   for_each_cell(
-      "flow::coarsen_reaction", box, KOKKOS_LAMBDA(int i, int j, int k) {
+      "flow::coarsen_reaction", boxes, KOKKOS_LAMBDA(int i, int j, int k) {
         Real exchange = 0, volume = 0;
         for (int c = k * ratio[2]; c < (k + 1) * ratio[2] && c < fine_shape.cells[2]; ++c)
           for (int b = j * ratio[1]; b < (j + 1) * ratio[1] && b < fine_shape.cells[1]; ++b)

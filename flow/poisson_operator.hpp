@@ -8,6 +8,7 @@
 // (Periodic), the cell itself (Closed) or minus the cell itself (Fixed).
 #include <type_traits>
 
+#include "core/box_list.hpp"
 #include "core/field.hpp"
 #include "core/loop.hpp"
 #include "flow/open_fraction.hpp"
@@ -237,10 +238,10 @@ RowRanges coarse_rows(const RowRanges& fine, const LevelShape& coarse, const Int
 RowRanges aligned_rows(const RowRanges& rows, const LevelShape& shape);
 
 /// Coarse coefficients: the sum of the finest open areas over the face, over the distance of the coarse
-/// centres; on the faces of the cells of a box.
+/// centres; on the faces of the cells of the boxes.
 template <class Coefficient>
-void derive_coefficients(const LevelOperator<Coefficient>& fine, const LevelShape& coarse, const Box& box,
-                         const FaceVector<float>& coefficients);
+void derive_coefficients(const LevelOperator<Coefficient>& fine, const LevelShape& coarse,
+                         const BoxList& boxes, const FaceVector<float>& coefficients);
 
 /// Reaction of one level: a part in proportion to the volume, and exchange with what lies outside (walls).
 struct LevelReaction {
@@ -249,9 +250,9 @@ struct LevelReaction {
   Real finest_volume = 0;  // whose total is positive
 };
 
-/// Coarse reaction of the cells of a box: the sum over the children, from whose centre the centre of the
+/// Coarse reaction of the cells of the boxes: the sum over the children, from whose centre the centre of the
 /// coarse cell is half a child's width away, which adds to the resistance of the exchange.
 void derive_reaction(const LevelShape& fine, const LevelReaction& fine_reaction, const LevelShape& coarse,
-                     const Box& box, const LevelReaction& coarse_reaction);
+                     const BoxList& boxes, const LevelReaction& coarse_reaction);
 
 }  // namespace peclet::flow

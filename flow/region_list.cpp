@@ -2,17 +2,10 @@
 
 #include <algorithm>
 
+#include "core/field_transfer.hpp"
+
 namespace peclet::flow {
 namespace {
-
-template <class T>
-void upload(const std::string& name, const std::vector<T>& values, Array<T>& device) {
-  if (device.extent(0) < values.size()) device = Array<T>(name, values.size() + values.size() / 2 + 16);
-  if (values.empty()) return;
-  const Kokkos::View<const T*, Kokkos::HostSpace, Kokkos::MemoryTraits<Kokkos::Unmanaged>> host(
-      values.data(), values.size());
-  Kokkos::deep_copy(Kokkos::subview(device, Kokkos::pair<std::size_t, std::size_t>(0, values.size())), host);
-}
 
 bool overlap_on_axis(const Box& a, const Box& b, int axis, int n) {
   for (int shift = -n; shift <= n; shift += n)
@@ -25,10 +18,14 @@ bool overlap(const Box& a, const Box& b, const Int3& cells) {
          overlap_on_axis(a, b, 2, cells[2]);
 }
 
-void list_cells(const RegionView& view, Index total) {
-  const RegionView target = view;
-  for_each(
-      "flow::list_region_cells", total, KOKKOS_LAMBDA(Index n) { target.listed(n) = target.find_cell(n); });
+/// Smallest box around two; they are not wrapped.
+Box hull(const Box& a, const Box& b) {
+  Box box;
+  for (int axis = 0; axis < 3; ++axis) {
+    box.low[axis] = std::min(a.low[axis], b.low[axis]);
+    box.high[axis] = std::max(a.high[axis], b.high[axis]);
+  }
+  return box;
 }
 
 }  // namespace
@@ -50,18 +47,28 @@ void RegionList::assign(const std::vector<Box>& boxes, const std::vector<int>& b
   upload("flow::region_body", bodies, view_.body);
   upload("flow::region_first_neighbor", first_neighbor, view_.first_neighbor);
   upload("flow::region_neighbors", neighbors, view_.neighbors);
-  if (view_.count < 2) return;
-  if (static_cast<Index>(view_.listed.extent(0)) < total_)
-    view_.listed = Array<RegionCell>("flow::region_cells", static_cast<std::size_t>(total_ + total_ / 4));
-  list_cells(view_, total_);
 }
 
-std::vector<Box> RegionList::boxes_inside() const {
+std::vector<Box> joined(const std::vector<Box>& first, const std::vector<Box>& second) {
+  std::vector<Box> both;
+  const std::size_t pairs = first.size() == second.size() ? first.size() : 0;
+  for (std::size_t b = 0; b < pairs; ++b) {
+    const Box around = hull(first[b], second[b]);
+    const bool is_small = around.size() <= first[b].size() + second[b].size();
+    both.push_back(is_small ? around : first[b]);
+    if (!is_small) both.push_back(second[b]);
+  }
+  both.insert(both.end(), first.begin() + static_cast<std::ptrdiff_t>(pairs), first.end());
+  both.insert(both.end(), second.begin() + static_cast<std::ptrdiff_t>(pairs), second.end());
+  return both;
+}
+
+std::vector<Box> cut_inside(const std::vector<Box>& boxes, const Int3& cells) {
   std::vector<Box> inside;
-  for (const Box& box : boxes_) {
+  for (const Box& box : boxes) {
     std::vector<Box> pieces{box};
     for (int axis = 0; axis < 3; ++axis) {
-      const int n = view_.cells[axis];
+      const int n = cells[axis];
       std::vector<Box> cut;
       for (Box piece : pieces) {
         if (piece.high[axis] > n) {

@@ -22,7 +22,6 @@ struct RegionView {
   Array<int> body;            // per box
   Array<int> first_neighbor;  // per box, plus the total
   Array<int> neighbors;       // boxes that share cells with a box, itself included, ascending
-  Array<RegionCell> listed;   // every cell, where there are several boxes
   Int3 cells;
   int count = 0;
 
@@ -40,9 +39,7 @@ struct RegionView {
   }
 
   /// Cell n of the flattened list.
-  KOKKOS_INLINE_FUNCTION RegionCell cell(Index n) const { return count > 1 ? listed(n) : find_cell(n); }
-
-  KOKKOS_INLINE_FUNCTION RegionCell find_cell(Index n) const {
+  KOKKOS_INLINE_FUNCTION RegionCell cell(Index n) const {
     int low = 0, high = count - 1;
     while (low < high) {
       const int middle = (low + high + 1) / 2;
@@ -66,6 +63,11 @@ struct RegionView {
   }
 };
 
+/// Boxes cut at the periodic edges: all inside the domain.
+std::vector<Box> cut_inside(const std::vector<Box>& boxes, const Int3& cells);
+/// Boxes that cover those of both lists, one by one with a common hull where that is smaller than the two.
+std::vector<Box> joined(const std::vector<Box>& first, const std::vector<Box>& second);
+
 /// Host side: built from one box per body, reuses its device arrays.
 class RegionList {
  public:
@@ -78,8 +80,9 @@ class RegionList {
   const RegionView& view() const { return view_; }
   Index number_of_cells() const { return total_; }
   bool empty() const { return total_ == 0; }
+  const std::vector<Box>& boxes() const { return boxes_; }
   /// The boxes cut at the periodic edges: all inside the domain.
-  std::vector<Box> boxes_inside() const;
+  std::vector<Box> boxes_inside() const { return cut_inside(boxes_, view_.cells); }
 
  private:
   RegionView view_;

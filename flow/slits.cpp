@@ -20,8 +20,8 @@ Index Slits::bytes() const {
 }
 
 void build_slits(int c, const SolidSampler& solid, const FaceVector<OpenFraction>& open, Real viscous_area,
-                 const NearCells& near, const Array<Index>& scratch, Slits& slits) {
-  const NearCells candidates = near;
+                 const CellList& near, const Array<Index>& scratch, Slits& slits) {
+  const CellList candidates = near;
   const Field<OpenFraction> fraction = open[c];
   const Real diffusion = slit_diffusion(solid.grid, c, viscous_area);
   slits.count = list_where(

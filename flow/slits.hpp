@@ -42,7 +42,7 @@ struct Slits {
 
 /// Lists the slits of component c among the cells near walls. viscous_area = nu dt.
 void build_slits(int c, const SolidSampler& solid, const FaceVector<OpenFraction>& open, Real viscous_area,
-                 const NearCells& near, const Array<Index>& scratch, Slits& slits);
+                 const CellList& near, const Array<Index>& scratch, Slits& slits);
 
 /// Recomputes U from the present velocities of the bodies.
 void refresh_slits(int c, const SolidSampler& solid, const Slits& slits);

@@ -108,7 +108,10 @@ KOKKOS_INLINE_FUNCTION FaceOpening face_opening(const SolidSampler& solid, int a
     d[n] = solid.distance(owner_low, owner_high, x);
   }
   const Real middle = solid.distance(owner_low, owner_high, center);
+  const int closed_count = (middle < 0) + (d[0] < 0) + (d[1] < 0) + (d[2] < 0) + (d[3] < 0);
   FaceOpening face;
+  if (closed_count == 0) return face;
+  if (closed_count == 5) return {0, 0, 0};
   for (int n = 0; n < 4; ++n) {
     const int m = (n + 1) % 4;
     const Real distance[3] = {middle, d[n], d[m]};

@@ -139,7 +139,7 @@ class Solver {
   void take_requested_poses();
   void promote_moved_bodies();
   void geometry_rebuilt();
-  void count_fluid_points();
+  void subtract_covered_points();
   MomentumTerms momentum_terms() const;
   bool is_advection_implicit() const {
     return settings_.implicit_advection && settings_.advection != AdvectionScheme::None;
@@ -157,7 +157,7 @@ class Solver {
   SweepPlan plan_;
   RowRanges velocity_rows_[3];  // points of each component
   SweepPlan velocity_plan_[3];
-  Real fluid_points_[3] = {0, 0, 0};
+  Real fluid_points_[3] = {0, 0, 0}, fixed_fluid_points_[3] = {0, 0, 0};  // without moving bodies
   bool geometry_stale_ = true, force_unbalanced_ = true, sides_stale_ = false, wall_velocity_stale_ = false,
        built_ = false;
 

@@ -68,12 +68,14 @@ void Solver::geometry_rebuilt() {
     velocity_plan_[c] = SweepPlan(grid_.cells, velocity_rows_[c].box, periodic.axis);
   }
   scalars_.geometry_changed();
-  count_fluid_points();
+  for (int c = 0; c < 3; ++c)
+    fixed_fluid_points_[c] =
+        count_fluid_points(velocity_rows_[c], boundary_.open()[c]) + boundary_.covered_points(c);
+  subtract_covered_points();
 }
 
-void Solver::count_fluid_points() {
-  for (int c = 0; c < 3; ++c)
-    fluid_points_[c] = peclet::flow::count_fluid_points(velocity_rows_[c], boundary_.open()[c]);
+void Solver::subtract_covered_points() {
+  for (int c = 0; c < 3; ++c) fluid_points_[c] = fixed_fluid_points_[c] - boundary_.covered_points(c);
 }
 
 void Solver::velocity_changed() {
@@ -203,14 +205,14 @@ void Solver::update_geometry() {
   promote_moved_bodies();
   if (!built_) return build_geometry(true);
   // faces about to be uncovered take the velocity of the body that covers them
-  boundary_.refresh_velocity(bodies_);
+  if (wall_velocity_stale_) boundary_.refresh_face_velocity(bodies_);
   impose_body_motion();
   const std::vector<int> leaping = bodies_that_leap();
   take_requested_poses();
   boundary_.update(bodies_, pressure_, viscous_area());
   pressure_solver_.update_open_fractions(boundary_.changed());
   if (!boundary_.changed().empty()) scalars_.geometry_changed();
-  count_fluid_points();
+  subtract_covered_points();
   for (const int b : leaping)
     for (int c = 0; c < 3; ++c)
       for (const Field<Real>& u : {velocity_[c], previous_[c]})

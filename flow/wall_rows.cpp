@@ -73,9 +73,9 @@ void chain_rows(const Layout& layout, WallRows& rows) {
 }
 
 void build_wall_rows(int c, const SolidSampler& solid, const FaceVector<OpenFraction>& open,
-                     const DomainSides& sides, const NearCells& near, const Array<Index>& scratch,
+                     const DomainSides& sides, const CellList& near, const Array<Index>& scratch,
                      WallRows& rows) {
-  const NearCells candidates = near;
+  const CellList candidates = near;
   const FaceVector<OpenFraction> fraction = open;
   const Layout layout = open.x.layout();
   const DomainSides box = sides;

@@ -85,7 +85,7 @@ KOKKOS_INLINE_FUNCTION bool touches_wall(const FaceVector<OpenFraction>& open, c
 
 /// Lists the rows of component c among the cells near walls.
 void build_wall_rows(int c, const SolidSampler& solid, const FaceVector<OpenFraction>& open,
-                     const DomainSides& sides, const NearCells& near, const Array<Index>& scratch,
+                     const DomainSides& sides, const CellList& near, const Array<Index>& scratch,
                      WallRows& rows);
 
 /// Chains the rows by row of cells once their faces are known.

@@ -81,4 +81,16 @@ TEST(RegionList, CountsCellsBoxByBox) {
   EXPECT_TRUE(list.boxes_inside().empty());
 }
 
+TEST(Joined, TakesTheHullOfBoxesThatHardlyMoved) {
+  const std::vector<Box> both = joined({{{1, 1, 1}, {5, 5, 5}}}, {{{2, 1, 1}, {6, 5, 5}}});
+  ASSERT_EQ(both.size(), 1u);
+  EXPECT_EQ(both[0].size(), 5 * 4 * 4);
+  EXPECT_TRUE(both[0].contains(1, 1, 1) && both[0].contains(5, 4, 4));
+}
+
+TEST(Joined, KeepsBoxesThatAreFarApart) {
+  EXPECT_EQ(joined({{{0, 0, 0}, {2, 2, 2}}}, {{{5, 3, 3}, {7, 5, 5}}}).size(), 2u);
+  EXPECT_EQ(joined({{{0, 0, 0}, {2, 2, 2}}}, {}).size(), 1u);
+}
+
 }  // namespace
