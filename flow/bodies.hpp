@@ -62,6 +62,19 @@ struct BodyGeometry {
     return distance_of_shape(body, near);
   }
 
+  /// The same at n points.
+  template <int n>
+  KOKKOS_INLINE_FUNCTION void distances(int b, const Vec3 (&x)[n], Real (&d)[n]) const {
+    const Body& body = bodies(b);
+    const Vec3 center = body.pose.translation;
+    const Real radius = body.pose.scale * program.sphere_radius(body.slot);
+    const bool is_sphere = radius > 0 && !body.wide;
+    for (int m = 0; m < n; ++m) {
+      const Vec3 near = center + images.nearest(x[m] - center);
+      d[m] = is_sphere ? norm(near - center) - radius : distance_of_shape(body, near);
+    }
+  }
+
   KOKKOS_FUNCTION Real distance_of_shape(const Body& body, const Vec3& near) const {
     if (body.pose.scale == 0) return far_away;
     Real d = program.distance(body.slot, body.pose, near);

@@ -63,21 +63,23 @@ void sample_band(const SolidSampler& solid, const Field<Real>& fixed_sdf, const 
   const Real3& h = solid.grid.spacing;
   const Real width = band_width * std::max({h[0], h[1], h[2]});
   band.count = list_where(
-      "flow::list_band", regions.number_of_cells(), scratch, KOKKOS_LAMBDA(Index n) {
+      "flow::sample_band", regions.number_of_cells(), scratch, KOKKOS_LAMBDA(Index n) {
         const RegionCell cell = region.cell(n);
-        return cell.unique && nearest_body(target, region, cell).distance <= width;
+        if (!cell.unique) return false;
+        const NearestBody moving = nearest_body(target, region, cell);
+        if (moving.distance > width) return false;
+        const Index p = target.sdf.layout()(cell.i, cell.j, cell.k);
+        const bool is_nearest = moving.distance < fixed_sdf[p];
+        target.sdf[p] = is_nearest ? moving.distance : fixed_sdf[p];
+        target.owner[p] = is_nearest ? moving.body : fixed_owner[p];
+        return true;
       });
   band.reserve(band.count);
   const CellList cells = band;
   for_each(
-      "flow::sample_band", band.count, KOKKOS_LAMBDA(Index n) {
+      "flow::list_band", band.count, KOKKOS_LAMBDA(Index n) {
         const RegionCell cell = region.cell(scratch(n));
         cells.listed(n) = Int3{cell.i, cell.j, cell.k};
-        const Index p = target.sdf.layout()(cell.i, cell.j, cell.k);
-        const NearestBody moving = nearest_body(target, region, cell);
-        const Real fixed = fixed_sdf[p];
-        target.sdf[p] = moving.distance < fixed ? moving.distance : fixed;
-        target.owner[p] = moving.distance < fixed ? moving.body : fixed_owner[p];
       });
 }
 

@@ -32,6 +32,12 @@ struct SolidSampler {
     return e < d ? e : d;
   }
 
+  template <int n>
+  KOKKOS_INLINE_FUNCTION void distances(int a, int b, const Vec3 (&x)[n], Real (&d)[n]) const {
+    if (a == b && a >= 0) return geometry.distances(a, x, d);
+    for (int m = 0; m < n; ++m) d[m] = distance(a, b, x[m]);
+  }
+
   /// Trilinear interpolation of the samples at cell centres.
   KOKKOS_INLINE_FUNCTION Real interpolated_sample(Vec3 x) const {
     int cell[3];
@@ -100,14 +106,14 @@ KOKKOS_INLINE_FUNCTION FaceOpening face_opening(const SolidSampler& solid, int a
   const int axis_s = (axis + 1) % 3, axis_t = (axis + 2) % 3;
   const Vec3 center = solid.grid.face_center(axis, i, j, k);
   constexpr Real corner_s[4] = {-0.5, 0.5, 0.5, -0.5}, corner_t[4] = {-0.5, -0.5, 0.5, 0.5};
-  Real d[4];
+  Vec3 x[5] = {center, center, center, center, center};
   for (int n = 0; n < 4; ++n) {
-    Vec3 x = center;
-    x[axis_s] += corner_s[n] * solid.grid.spacing[axis_s];
-    x[axis_t] += corner_t[n] * solid.grid.spacing[axis_t];
-    d[n] = solid.distance(owner_low, owner_high, x);
+    x[n][axis_s] += corner_s[n] * solid.grid.spacing[axis_s];
+    x[n][axis_t] += corner_t[n] * solid.grid.spacing[axis_t];
   }
-  const Real middle = solid.distance(owner_low, owner_high, center);
+  Real d[5];
+  solid.distances(owner_low, owner_high, x, d);
+  const Real middle = d[4];
   const int closed_count = (middle < 0) + (d[0] < 0) + (d[1] < 0) + (d[2] < 0) + (d[3] < 0);
   FaceOpening face;
   if (closed_count == 0) return face;
@@ -177,6 +183,13 @@ KOKKOS_INLINE_FUNCTION NarrowGap narrow_gap(const SolidSampler& solid, int axis,
   NarrowGap gap;
   gap.first = solid.owner[p];
   int other = solid.owner[q];
+  bool is_alone = other == gap.first;
+  for (int a = 0; a < 3; ++a) {
+    const Index step = layout.stride(a);
+    is_alone = is_alone & (solid.owner[p - step] == gap.first) & (solid.owner[p + step] == gap.first) &
+               (solid.owner[q - step] == gap.first) & (solid.owner[q + step] == gap.first);
+  }
+  if (is_alone) return gap;
   for (int n = 0; n < 12 && other == gap.first; ++n) {
     const Index step = (n & 1 ? 1 : -1) * layout.stride(n / 4);
     other = solid.owner[(n & 2 ? p : q) + step];
