@@ -80,12 +80,21 @@ Real Solver::extrapolation_share() const {
 }
 
 void Solver::step() {
+  double time_of_step = geometry_time_;
+  times_ = {};
+  {
+    const Stopwatch watch(time_of_step);
+    advance();
+  }
+  times_.geometry = geometry_time_;
+  times_.rest = time_of_step - times_.sum();
+  geometry_time_ = 0;
+}
+
+void Solver::advance() {
   if (boundary_.has_slits() && boundary_.viscous_area() != viscous_area()) geometry_stale_ = true;
   bring_geometry_up_to_date();
   if (wall_velocity_stale_) refresh_wall_velocity();
-  const double geometry_time = times_.geometry;
-  times_ = {};
-  times_.geometry = geometry_time;
 
   scalars_.prepare(scalar_flow(velocity_));
   balance_body_force();
@@ -181,8 +190,10 @@ void Solver::predict_velocity(const MomentumTerms& terms, Real velocity_scale) {
       velocity_report_.iterations = std::max(velocity_report_.iterations, report.iterations);
       velocity_report_.residual = std::max(velocity_report_.residual, report.residual);
       velocity_report_.converged = velocity_report_.converged && report.converged;
+    }
+    {
+      const Stopwatch watch(times_.loads);
       fill_correction_ghosts(correction, c, sides_);
-      const Stopwatch load_watch(times_.loads);
       load_collector_.add_momentum(c, terms, boundary_.solid(), fixed_rows, moving_rows, correction);
     }
     apply_correction(velocity_plan_[c], velocity_rows_[c], terms.step_ratio, velocity_[c], correction,

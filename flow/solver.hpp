@@ -18,9 +18,11 @@
 
 namespace peclet::flow {
 
-/// Wall time of the parts of the last step and of the last geometry update, in seconds.
+/// Wall time of the parts of the last step, in seconds. Geometry counts from the end of the step before.
 struct StepTimes {
   double geometry = 0, momentum = 0, viscous = 0, pressure = 0, loads = 0, rest = 0;
+
+  double sum() const { return geometry + momentum + viscous + pressure + loads + rest; }
 };
 
 /// Where the time scheme stands.
@@ -121,6 +123,7 @@ class Solver {
   std::size_t bytes() const;
 
  private:
+  void advance();
   void balance_body_force();
   void return_advective_leak(MomentumTerms& terms);
   void predict_velocity(const MomentumTerms& terms, Real velocity_scale);
@@ -170,6 +173,7 @@ class Solver {
   std::vector<BodyLoad> loads_;
   SolverReport velocity_report_, pressure_report_;
   StepTimes times_;
+  double geometry_time_ = 0;  // since the last step
   double time_ = 0;
   long steps_ = 0;
   Real previous_time_step_ = 0, courant_number_bound_ = 0;

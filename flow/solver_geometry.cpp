@@ -199,8 +199,7 @@ void Solver::promote_moved_bodies() {
 }
 
 void Solver::update_geometry() {
-  times_.geometry = 0;
-  const Stopwatch watch(times_.geometry);
+  const Stopwatch watch(geometry_time_);
   take_requested_sides();
   promote_moved_bodies();
   if (!built_) return build_geometry(true);

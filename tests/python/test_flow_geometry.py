@@ -1,6 +1,7 @@
 """Scenes on the solver: sampling, images, transforms, motion, and when they take effect."""
 
 import itertools
+import time
 
 import numpy as np
 import pytest
@@ -298,3 +299,21 @@ def test_turning_the_axes_turns_the_flow():
     for (velocity, load), (other_velocity, other_load) in itertools.pairwise(results):
         np.testing.assert_allclose(velocity, other_velocity, atol=1e-8)
         np.testing.assert_allclose(load, other_load, rtol=1e-5, atol=1e-6)
+
+
+def test_the_parts_of_a_step_add_up_to_its_time():
+    solver = flow.Solver(16, 14, 18)
+    box_with(solver, ((5.3, 6.1, 7.8), 2.7, (0.1, 0, 0)))
+    solver.step()
+    begin = time.perf_counter()
+    solver.step()
+    whole = time.perf_counter() - begin
+    parts = solver.last_step_timers()
+    assert set(parts) == {"geometry", "momentum", "viscous", "pressure", "loads", "rest"}
+    assert parts["geometry"] == 0  # nothing moved
+    assert min(parts.values()) >= 0
+    assert sum(parts.values()) <= whole
+    solver.set_instance_transform(0, [5.4, 6.1, 7.8])
+    solver.rebuild_geometry()
+    solver.step()
+    assert solver.last_step_timers()["geometry"] > 0

@@ -63,7 +63,10 @@ class Instruments(ScalarInstruments):
         return self._core.field_view(f"scalar_{name}" if name in self._core.scalar_names else name)
 
     def last_step_timers(self) -> dict[str, float]:
-        """Seconds spent in the parts of the last step."""
+        """Seconds spent in the parts of the last step: geometry, momentum, viscous, pressure, loads, rest.
+
+        They add up to the time of the step; a geometry update that was asked for before the step counts too.
+        """
         return dict(self._core.times())
 
     def set_velocity_solver_params(self, iters: int, rtol: float = 0.0, min_iters: int = 2) -> None:
