@@ -236,7 +236,7 @@ def settling_in_wide_tank(
 ) -> Rows:
     """Final speed of a sphere that settles in a wide tank, beside two correlations of the drag."""
     speed = wide_tank.terminal_speed(*wide_tank.settle(reynolds, resolution, width=width, height=height))
-    name = f"settling in a wide tank, Re {reynolds:g}, d/h {resolution}"
+    name = f"settling in a tank {width:g} d wide, Re {reynolds:g}, d/h {resolution}"
     other = wide_tank.speed_of_balance(wide_tank.clift_grace_weber, reynolds)
     return [
         Row(name, "u / u of Schiller and Naumann", 1.0, speed, target, bound=bound),
