@@ -33,9 +33,9 @@ class Oscillation:
     def morison(self) -> tuple[float, float]:
         """c_d and c_m of F = -rho d c_d |u| u / 2 - pi/4 rho d^2 c_m du/dt, averages over the last period.
 
-        Both sides of the formula are multiplied by u or du/dt and averaged. The published coefficients are
-        such averages, of the first harmonic; a fit by least squares, which weighs the force by |u| u,
-        makes c_d 3 % smaller from the same force.
+        Both sides of the formula are multiplied by u or du/dt and averaged. In this reading the force in
+        unbounded fluid, computed independently (polar.py), has the published coefficients to 0.5 %. A fit by
+        least squares, which weighs the force by |u| u, makes c_d 3 % smaller from the same force.
         """
         last = self.last_period
         phase = OMEGA * last.time
