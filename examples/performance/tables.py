@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 DATA = pathlib.Path(__file__).resolve().parent / "data"
 WITH_REFERENCE = ("coupled_step", "static_array")
-NAMES = (*WITH_REFERENCE, "geometry", "sizes", "threads", "pressure", "startup")
+NAMES = (*WITH_REFERENCE, "geometry", "sizes", "threads", "pressure", "viscous", "dem", "startup")
 STYLE = {"axes.spines.top": False, "axes.spines.right": False, "font.size": 9, "legend.frameon": False}
 COLORS = ("#0072B2", "#56B4E9", "#009E73", "#E69F00", "#D55E00", "0.7")
 PARTS = ("geometry", "momentum", "viscous", "pressure", "loads", "rest")
