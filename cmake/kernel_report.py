@@ -16,7 +16,7 @@ STACK = re.compile(r"(\d+) bytes stack frame, (\d+) bytes spill stores, (\d+) by
 REGISTERS = re.compile(r"Used (\d+) registers")
 LENGTH = re.compile(r"S[0-9A-Z]*_|([1-9]\d*)")  # or a substitution
 LAUNCHER = re.compile(
-    r"peclet|core|flow|dem|detail|launch\w*|for_each\w*|sum_\w+|max_\w+|enumerate|exclusive_sum|sweep\w*"
+    r"peclet|core|flow|dem|detail|launch\w*|for_each\w*|sum_\w+|max_\w+|list_where|exclusive_sum|sweep\w*"
     r"|Array|Field|Stage|RowRanges|_GLOBAL_\w*"
 )
 

@@ -8,24 +8,24 @@
 
 namespace peclet {
 
+/// The one of count boxes that entry n lies in, firsts(b) being the first entry of box b.
+KOKKOS_INLINE_FUNCTION int box_of_entry(const Array<Index>& firsts, int count, Index n) {
+  int low = 0, high = count - 1;
+  while (low < high) {
+    const int middle = (low + high + 1) / 2;
+    if (firsts(middle) <= n)
+      low = middle;
+    else
+      high = middle - 1;
+  }
+  return low;
+}
+
 /// Device side of BoxList.
 struct BoxListView {
   Array<Box> boxes;
   Array<Index> first_row, first_cell;
   int count = 0;
-
-  /// The box that entry n lies in, firsts[b] being the first entry of box b.
-  KOKKOS_INLINE_FUNCTION int box_of(const Array<Index>& firsts, Index n) const {
-    int low = 0, high = count - 1;
-    while (low < high) {
-      const int middle = (low + high + 1) / 2;
-      if (firsts(middle) <= n)
-        low = middle;
-      else
-        high = middle - 1;
-    }
-    return low;
-  }
 };
 
 /// Keeps its arrays when boxes are assigned anew.
@@ -61,7 +61,7 @@ void for_each_cell(const std::string& label, const BoxList& list, const Body& bo
   const BoxListView view = list.view();
   if constexpr (runs_on_host) {
     for_each(label, list.number_of_rows(), [=](Index n) {
-      const int b = view.box_of(view.first_row, n);
+      const int b = box_of_entry(view.first_row, view.count, n);
       const Box& box = view.boxes(b);
       const int row = static_cast<int>(n - view.first_row(b)), ny = box.extent(1);
       const int j = box.low[1] + row % ny, k = box.low[2] + row / ny;
@@ -70,7 +70,7 @@ void for_each_cell(const std::string& label, const BoxList& list, const Body& bo
   } else {
     for_each(
         label, list.number_of_cells(), KOKKOS_LAMBDA(Index n) {
-          const int b = view.box_of(view.first_cell, n);
+          const int b = box_of_entry(view.first_cell, view.count, n);
           const Box& box = view.boxes(b);
           const int place = static_cast<int>(n - view.first_cell(b)), nx = box.extent(0), ny = box.extent(1);
           const int row = place / nx;

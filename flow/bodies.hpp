@@ -56,23 +56,26 @@ struct BodyGeometry {
   /// Signed distance of body b (negative inside), smallest over its periodic images.
   KOKKOS_FORCEINLINE_FUNCTION Real distance(int b, Vec3 x) const {
     const Body& body = bodies(b);
-    const Vec3 near = body.pose.translation + images.nearest(x - body.pose.translation);
-    const Real radius = body.pose.scale * program.sphere_radius(body.slot);
-    if (radius > 0 && !body.wide) return norm(near - body.pose.translation) - radius;
-    return distance_of_shape(body, near);
+    return distance_from(body, sphere_radius(body), x);
   }
 
   /// The same at n points.
   template <int n>
   KOKKOS_INLINE_FUNCTION void distances(int b, const Vec3 (&x)[n], Real (&d)[n]) const {
     const Body& body = bodies(b);
-    const Vec3 center = body.pose.translation;
-    const Real radius = body.pose.scale * program.sphere_radius(body.slot);
-    const bool is_sphere = radius > 0 && !body.wide;
-    for (int m = 0; m < n; ++m) {
-      const Vec3 near = center + images.nearest(x[m] - center);
-      d[m] = is_sphere ? norm(near - center) - radius : distance_of_shape(body, near);
-    }
+    const Real radius = sphere_radius(body);
+    for (int m = 0; m < n; ++m) d[m] = distance_from(body, radius, x[m]);
+  }
+
+  /// Radius of a sphere whose nearest image is all that matters, else 0.
+  KOKKOS_FORCEINLINE_FUNCTION Real sphere_radius(const Body& body) const {
+    return body.wide ? 0.0 : body.pose.scale * program.sphere_radius(body.slot);
+  }
+
+  /// radius: sphere_radius(body).
+  KOKKOS_FORCEINLINE_FUNCTION Real distance_from(const Body& body, Real radius, Vec3 x) const {
+    const Vec3 center = body.pose.translation, near = center + images.nearest(x - center);
+    return radius > 0 ? norm(near - center) - radius : distance_of_shape(body, near);
   }
 
   KOKKOS_FUNCTION Real distance_of_shape(const Body& body, const Vec3& near) const {

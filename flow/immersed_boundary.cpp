@@ -104,8 +104,7 @@ void extrapolate_pressure(const FaceVector<OpenFraction>& open, const DomainSide
         const Int3 at = candidates.cell(m);
         const Layout& layout = p.layout();
         const Index n = layout(at[0], at[1], at[2]);
-        for (int a = 0; a < 3; ++a)
-          if (fraction[a][n] || fraction[a][n + layout.stride(a)]) return;  // an open cell
+        if (is_open_cell(fraction, n)) return;
         Real sum = 0;
         int count = 0;
         for (int d = 0; d < 6; ++d) {
@@ -115,10 +114,7 @@ void extrapolate_pressure(const FaceVector<OpenFraction>& open, const DomainSide
           if (!box.is_periodic(a) && (q[a] < 0 || q[a] == cells[a])) continue;
           q[a] = q[a] < 0 ? q[a] + cells[a] : (q[a] >= cells[a] ? q[a] - cells[a] : q[a]);
           const Index neighbor = layout(q[0], q[1], q[2]);
-          bool is_open = false;
-          for (int b = 0; b < 3; ++b)
-            is_open = is_open || fraction[b][neighbor] || fraction[b][neighbor + layout.stride(b)];
-          if (!is_open) continue;
+          if (!is_open_cell(fraction, neighbor)) continue;
           sum += p[neighbor];
           ++count;
         }
@@ -140,10 +136,7 @@ RowRanges open_row_ranges(const FaceVector<OpenFraction>& open_fractions, const 
         const int j = static_cast<int>(row % n[1]), k = static_cast<int>(row / n[1]);
         int begin = n[0], end = 0;
         for (int i = 0; i < n[0]; ++i) {
-          const Index p = layout(i, j, k);
-          bool any = false;
-          for (int a = 0; a < 3; ++a) any = any || open[a][p] || open[a][p + layout.stride(a)];
-          if (!any) continue;
+          if (!is_open_cell(open, layout(i, j, k))) continue;
           begin = i < begin ? i : begin;
           end = i + 1;
         }

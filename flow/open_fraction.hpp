@@ -2,6 +2,7 @@
 // Open part of the faces between cells: the coefficients of the pressure operator.
 #include <cstdint>
 
+#include "core/field.hpp"
 #include "core/types.hpp"
 
 namespace peclet::flow {
@@ -18,6 +19,13 @@ inline constexpr Real open_fraction_unit = 1.0 / 32768;
 KOKKOS_INLINE_FUNCTION int is_fluid(OpenFraction open) { return (open < 1 ? open : 1) & ~open; }
 
 KOKKOS_INLINE_FUNCTION bool is_slit(OpenFraction open) { return open & 1; }
+
+/// Whether any face of cell p is open.
+KOKKOS_INLINE_FUNCTION bool is_open_cell(const FaceVector<OpenFraction>& open, Index p) {
+  bool any = false;
+  for (int a = 0; a < 3; ++a) any = any || open[a][p] || open[a][p + open.x.layout().stride(a)];
+  return any;
+}
 
 /// What lies beyond a side of the box, for the pressure.
 enum class PressureSide {

@@ -3,8 +3,7 @@
 // exactly once, although boxes overlap and wrap around periodic edges.
 #include <vector>
 
-#include "core/grid.hpp"
-#include "core/loop.hpp"
+#include "core/box_list.hpp"
 
 namespace peclet::flow {
 
@@ -40,24 +39,17 @@ struct RegionView {
 
   /// Cell n of the flattened list.
   KOKKOS_INLINE_FUNCTION RegionCell cell(Index n) const {
-    int low = 0, high = count - 1;
-    while (low < high) {
-      const int middle = (low + high + 1) / 2;
-      if (first_cell(middle) <= n)
-        low = middle;
-      else
-        high = middle - 1;
-    }
-    const Box& box = boxes(low);
-    const int place = static_cast<int>(n - first_cell(low));
+    const int own = box_of_entry(first_cell, count, n);
+    const Box& box = boxes(own);
+    const int place = static_cast<int>(n - first_cell(own));
     const int nx = box.extent(0), ny = box.extent(1), row = place / nx;
     RegionCell cell;
     cell.i = wrap(box.low[0] + place - row * nx, cells[0]);
     cell.j = wrap(box.low[1] + row % ny, cells[1]);
     cell.k = wrap(box.low[2] + row / ny, cells[2]);
-    cell.region = low;
+    cell.region = own;
     cell.unique = true;
-    for (int m = first_neighbor(low); m < first_neighbor(low + 1) && neighbors(m) < low; ++m)
+    for (int m = first_neighbor(own); m < first_neighbor(own + 1) && neighbors(m) < own; ++m)
       if (contains(neighbors(m), cell.i, cell.j, cell.k)) cell.unique = false;
     return cell;
   }
@@ -81,8 +73,6 @@ class RegionList {
   Index number_of_cells() const { return total_; }
   bool empty() const { return total_ == 0; }
   const std::vector<Box>& boxes() const { return boxes_; }
-  /// The boxes cut at the periodic edges: all inside the domain.
-  std::vector<Box> boxes_inside() const { return cut_inside(boxes_, view_.cells); }
 
  private:
   RegionView view_;

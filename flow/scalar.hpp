@@ -49,7 +49,7 @@ struct ScalarSide {
 struct ScalarSides {
   ScalarSide side[3][2];
 
-  KOKKOS_INLINE_FUNCTION Real value(int axis, int high, const int (&cell)[3]) const {
+  KOKKOS_INLINE_FUNCTION Real value(int axis, int high, const Int3& cell) const {
     return side[axis][high].at(cell[axis == 0 ? 1 : 0], cell[axis == 2 ? 1 : 2]);
   }
   Periodicity periodicity() const {

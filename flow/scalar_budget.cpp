@@ -15,7 +15,7 @@ void fill_side_ghosts(const Field<Real>& value, const ScalarSides& sides, int ax
   const Field<Real> c = value;
   for_each_cell(
       "flow::scalar_ghosts", layer, KOKKOS_LAMBDA(int i, int j, int k) {
-        const int cell[3] = {i, j, k};
+        const Int3 cell{i, j, k};
         const Index step = c.layout().stride(axis);
         for (int high = 0; high < 2; ++high) {
           const Index first = c.layout()(i, j, k) + (high ? (n[axis] - 1) * step : 0);

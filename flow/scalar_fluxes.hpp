@@ -17,8 +17,7 @@ struct ScalarFace {
 KOKKOS_INLINE_FUNCTION ScalarFace scalar_face(const ScalarTerms& t, Index p, int d) {
   const Layout& layout = t.fields.value.layout();
   const int axis = d / 2, high = d % 2;
-  const Int3 at = cell_of(layout, p);
-  const int cell[3] = {at[0], at[1], at[2]};
+  const Int3 cell = cell_of(layout, p);
   const ScalarSide& side = t.sides.side[axis][high];
   ScalarFace face;
   face.face = high ? p + layout.stride(axis) : p;

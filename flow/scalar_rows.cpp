@@ -4,6 +4,7 @@
 
 #include "core/halo.hpp"
 #include "flow/cell_volume.hpp"
+#include "flow/near_cells.hpp"
 
 namespace peclet::flow {
 namespace {
@@ -29,13 +30,13 @@ struct RowBuilder {
   Field<float> volume;
   ScalarRows rows;
 
-  KOKKOS_INLINE_FUNCTION bool at_side(int axis, int high, const int (&cell)[3]) const {
+  KOKKOS_INLINE_FUNCTION bool at_side(int axis, int high, const Int3& cell) const {
     return !geometry.sides.side[axis][high].is_periodic &&
            cell[axis] == (high ? state.layout().cells[axis] - 1 : 0);
   }
 
   /// Open part of the face in one direction: the same number seen from both sides.
-  KOKKOS_INLINE_FUNCTION Real opening(int axis, int high, const int (&cell)[3], Index p) const {
+  KOKKOS_INLINE_FUNCTION Real opening(int axis, int high, const Int3& cell, Index p) const {
     int face[3] = {cell[0], cell[1], cell[2]};
     face[axis] += high;
     if (geometry.sides.side[axis][high].is_periodic && face[axis] == state.layout().cells[axis])
@@ -47,7 +48,7 @@ struct RowBuilder {
     return face_opening(geometry.solid, axis, face[0], face[1], face[2], low_owner, high_owner).open;
   }
 
-  KOKKOS_INLINE_FUNCTION Neighbor neighbor(int axis, int high, const int (&cell)[3], Index p) const {
+  KOKKOS_INLINE_FUNCTION Neighbor neighbor(int axis, int high, const Int3& cell, Index p) const {
     const bool is_cut = state[p] == cell_state::cut;
     Neighbor result;
     if (at_side(axis, high, cell)) {
@@ -99,7 +100,7 @@ struct RowBuilder {
     }
   }
 
-  KOKKOS_INLINE_FUNCTION void fill(Index row, const int (&cell)[3]) const {
+  KOKKOS_INLINE_FUNCTION void fill(Index row, const Int3& cell) const {
     const Grid& grid = geometry.solid.grid;
     const Index p = state.layout()(cell[0], cell[1], cell[2]);
     const Real cell_volume = grid.cell_volume();
@@ -134,7 +135,7 @@ struct RowBuilder {
 
 /// True where the regular stencil does not hold.
 KOKKOS_INLINE_FUNCTION bool needs_row(const ScalarGeometry& geometry, const Field<OpenFraction>& state,
-                                      const int (&cell)[3]) {
+                                      const Int3& cell) {
   const Layout& layout = state.layout();
   const Index p = layout(cell[0], cell[1], cell[2]);
   if (state[p] != cell_state::whole) return state[p] == cell_state::cut;
@@ -145,18 +146,6 @@ KOKKOS_INLINE_FUNCTION bool needs_row(const ScalarGeometry& geometry, const Fiel
       if (at_side || state[q] != cell_state::whole) return true;
     }
   return false;
-}
-
-KOKKOS_INLINE_FUNCTION void cell_indices(const Int3& n, Index place, int (&cell)[3]) {
-  cell[0] = static_cast<int>(place % n[0]);
-  cell[1] = static_cast<int>(place / n[0] % n[1]);
-  cell[2] = static_cast<int>(place / n[0] / n[1]);
-}
-
-KOKKOS_INLINE_FUNCTION bool any_open(const FaceVector<OpenFraction>& open, Index p) {
-  bool any = false;
-  for (int a = 0; a < 3; ++a) any = any || open[a][p] || open[a][p + open.x.layout().stride(a)];
-  return any;
 }
 
 }  // namespace
@@ -190,7 +179,7 @@ void classify_cells(const ScalarGeometry& geometry, const Field<OpenFraction>& s
         Real part = distance >= 0 ? 1 : 0;
         if (distance <= reach && distance >= -reach && owner != no_owner && !g.gives_value(owner)) {
           part = fluid_part_of_cell(g.solid, i, j, k, owner);
-          const bool counts = part > negligible_part || any_open(g.open, p);
+          const bool counts = part > negligible_part || is_open_cell(g.open, p);
           kind = counts ? cell_state::cut : cell_state::solid;
           part = counts ? Kokkos::fmax(part, static_cast<Real>(smallest_cell_volume)) : 0;
         }
@@ -206,23 +195,16 @@ void build_scalar_rows(const ScalarGeometry& geometry, const Field<OpenFraction>
                        const Field<float>& volume, const Array<Index>& scratch, ScalarRows& rows) {
   const ScalarGeometry g = geometry;
   const Field<OpenFraction> s = state;
-  const Int3 n = state.layout().cells;
-  const Index total = g.solid.grid.number_of_cells();
+  const CellList all = CellList::of_grid(state.layout().cells);
   const Index kept = list_where(
-      "flow::list_scalar_rows", total, scratch, KOKKOS_LAMBDA(Index m) {
-        int cell[3];
-        cell_indices(n, m, cell);
-        return needs_row(g, s, cell);
-      });
+      "flow::list_scalar_rows", all.count, scratch,
+      KOKKOS_LAMBDA(Index n) { return needs_row(g, s, all.cell(n)); });
   rows.reserve(kept);
   rows.links.count = kept;
   const RowBuilder builder{geometry, state, volume, rows};
   for_each(
-      "flow::build_scalar_rows", kept, KOKKOS_LAMBDA(Index row) {
-        int cell[3];
-        cell_indices(n, scratch(row), cell);
-        builder.fill(row, cell);
-      });
+      "flow::build_scalar_rows", kept,
+      KOKKOS_LAMBDA(Index row) { builder.fill(row, all.cell(scratch(row))); });
   chain_rows(state.layout(), rows.links);
 }
 
@@ -230,12 +212,10 @@ void build_extension(const ScalarGeometry& geometry, const Field<OpenFraction>& 
                      const Array<Index>& scratch, ExtensionCells& cells) {
   const ScalarGeometry g = geometry;
   const Field<OpenFraction> s = state;
-  const Int3 n = state.layout().cells;
-  const Index total = g.solid.grid.number_of_cells();
+  const CellList all = CellList::of_grid(state.layout().cells);
   const Index kept = list_where(
-      "flow::list_extension", total, scratch, KOKKOS_LAMBDA(Index m) {
-        int cell[3];
-        cell_indices(n, m, cell);
+      "flow::list_extension", all.count, scratch, KOKKOS_LAMBDA(Index n) {
+        const Int3 cell = all.cell(n);
         const Index p = s.layout()(cell[0], cell[1], cell[2]);
         if (s[p] != cell_state::solid || g.gives_value(g.solid.owner[p])) return false;
         bool beside = false;
@@ -248,10 +228,9 @@ void build_extension(const ScalarGeometry& geometry, const Field<OpenFraction>& 
   cells.count = kept;
   const Array<Index> target = cells.cell;
   for_each(
-      "flow::build_extension", kept, KOKKOS_LAMBDA(Index m) {
-        int cell[3];
-        cell_indices(n, scratch(m), cell);
-        target(m) = s.layout()(cell[0], cell[1], cell[2]);
+      "flow::build_extension", kept, KOKKOS_LAMBDA(Index n) {
+        const Int3 cell = all.cell(scratch(n));
+        target(n) = s.layout()(cell[0], cell[1], cell[2]);
       });
 }
 

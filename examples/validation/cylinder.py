@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 
 import numpy as np
 from peclet.core.geom import SceneBuilder
@@ -98,16 +99,12 @@ def run(
     """The cylinder moves; all sides are planes of symmetry."""
     per_period = per_period or 32 * resolution
     solver = make_solver(resolution, length, width, ("-x", "+x", "-y", "+y"), scheme)
-    h, dt = 1 / resolution, PERIOD / per_period
-    solver.set_dt(dt)
-    times, forces = dt * np.arange(1, periods * per_period + 1), []
-    for time in times:
-        solver.set_instance_transform(0, [-AMPLITUDE * np.sin(OMEGA * time), 0, h / 2])
+
+    def move(time: float, _: float) -> None:
+        solver.set_instance_transform(0, [-AMPLITUDE * np.sin(OMEGA * time), 0, 1 / resolution / 2])
         solver.set_instance_motion(0, (-np.cos(OMEGA * time), 0, 0))
-        solver.step()
-        forces.append(force_coefficient(solver))
-    # the force of a step belongs to its middle
-    return Oscillation(times - dt / 2, np.array(forces), per_period)
+
+    return march(solver, per_period, periods, move)
 
 
 def run_at_rest(
@@ -125,17 +122,25 @@ def run_at_rest(
     """
     per_period = per_period or 32 * resolution
     solver = make_solver(resolution, length, width, ("-y", "+y"), scheme)
+    solver.set_velocity(0, np.ones(solver.cells))
+
+    def push(time: float, dt: float) -> None:
+        solver.set_body_force((np.cos(OMEGA * time) - np.cos(OMEGA * (time - dt))) / dt, 0, 0)
+
+    return march(solver, per_period, periods, push)
+
+
+def march(
+    solver: Solver, per_period: int, periods: int, drive: Callable[[float, float], None]
+) -> Oscillation:
+    """Forces of steps of equal length; drive(time, dt) comes before the step that ends at time."""
     dt = PERIOD / per_period
     solver.set_dt(dt)
-    solver.set_velocity(0, np.ones(solver.cells))
     times, forces = dt * np.arange(1, periods * per_period + 1), []
     for time in times:
-        solver.set_body_force((np.cos(OMEGA * time) - np.cos(OMEGA * (time - dt))) / dt, 0, 0)
+        drive(time, dt)
         solver.step()
-        forces.append(force_coefficient(solver))
+        # over rho U^2 d / 2, twice that on the half
+        forces.append(2 * 2 * solver.hydro_force_torque_reaction()[0, 0, 0] / solver.spacing[2])
+    # the force of a step belongs to its middle
     return Oscillation(times - dt / 2, np.array(forces), per_period)
-
-
-def force_coefficient(solver: Solver) -> float:
-    """Force along x of the last step over rho U^2 d / 2, twice that on the half."""
-    return float(2 * 2 * solver.hydro_force_torque_reaction()[0, 0, 0] / solver.spacing[2])
