@@ -25,8 +25,8 @@ namespace peclet {
 class SweepPlan {
  public:
   SweepPlan() = default;
-  /// wraps: which axes are periodic.
-  SweepPlan(const Int3& cells, const Box& box, const bool (&wraps)[3]);
+  /// wraps: which axes are periodic. Planes 2 I - shift and the one after it are never parted.
+  SweepPlan(const Int3& cells, const Box& box, const bool (&wraps)[3], const Int3& shift = {0, 0, 0});
 
   int axis() const { return axis_; }
   int low() const { return low_; }
@@ -35,26 +35,28 @@ class SweepPlan {
   int wrapped(int plane) const {
     return plane < low_ ? plane + high_ : (plane >= high_ ? plane - high_ : plane);
   }
-  /// Slabs for a sweep of that many stages; they start at even planes.
+  /// Slabs for a sweep of that many stages.
   int number_of_slabs(int stages) const;
+  /// The slabs of a periodic axis begin at plane shift and end beyond the last one, to be wrapped.
   int slab_begin(int slab, int slabs) const {
-    if (slab == slabs) return high_;
-    return slab == 0 ? low_
-                     : low_ + static_cast<int>(Index{high_ - low_} * slab / slabs) / 2 * 2 + (low_ % 2);
+    const int begin = low_ + (wraps_ ? shift_ : 0), planes = high_ - low_;
+    if (slab == 0 || slab == slabs) return begin + (slab == 0 ? 0 : planes);
+    return begin + static_cast<int>(Index{planes} * slab / slabs) / 2 * 2 + (begin + shift_) % 2;
   }
   Norms& result(int plane) const { return results_.data()[plane - low_]; }
 
  private:
-  int axis_ = 2, low_ = 0, high_ = 0;
+  int axis_ = 2, low_ = 0, high_ = 0, shift_ = 0;
   bool wraps_ = false;
   Index cells_ = 0;
   Kokkos::View<Norms*, Kokkos::HostSpace> results_;
 };
 
-inline SweepPlan::SweepPlan(const Int3& cells, const Box& box, const bool (&wraps)[3]) {
+inline SweepPlan::SweepPlan(const Int3& cells, const Box& box, const bool (&wraps)[3], const Int3& shift) {
   axis_ = box.extent(2) < 8 && box.extent(1) > box.extent(2) ? 1 : 2;
   low_ = box.low[axis_];
   high_ = box.high[axis_];
+  shift_ = shift[axis_];
   wraps_ = wraps[axis_] && box.extent(axis_) == cells[axis_];
   cells_ = box.size();
   results_ = Kokkos::View<Norms*, Kokkos::HostSpace>("sweep_results", high_ - low_);
@@ -93,7 +95,7 @@ class HostSweep {
   }
 
  private:
-  void run_stage(int stage, int plane) const { pipeline_.run(plan_, first_ + stage, plane); }
+  void run_stage(int stage, int plane) const { pipeline_.run(plan_, first_ + stage, plan_.wrapped(plane)); }
 
   /// Stage s leaves out s planes at the ends where another slab follows.
   void walk_slab(int slab, int slabs, bool wraps) const {
@@ -109,8 +111,7 @@ class HostSweep {
   /// What the slabs on both sides of a plane left out.
   void close_gap(int middle) const {
     for (int stage = 0; stage < count_; ++stage)
-      for (int plane = middle - stage; plane < middle + stage; ++plane)
-        run_stage(stage, plan_.wrapped(plane));
+      for (int plane = middle - stage; plane < middle + stage; ++plane) run_stage(stage, plane);
   }
 
   const SweepPlan& plan_;

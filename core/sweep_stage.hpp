@@ -278,17 +278,20 @@ typename Stage<Parts...>::Result Stage<Parts...>::launch(const char* label) cons
 }
 
 /// A stage on the fine grid and, as soon as all children of a coarse plane are done, one on the coarse grid.
+/// An even number of stages goes before it.
 template <class FineStage, class CoarseStage>
 struct CoarseningStage {
   using Result = Nothing;
   FineStage fine;
   CoarseStage coarse;
-  Int3 ratio;  ///< fine cells per coarse cell, 1 or 2
+  Int3 ratio;              ///< fine cells per coarse cell, 1 or 2
+  Int3 shift = {0, 0, 0};  ///< 2 I - shift is the first child of coarse cell I
 
   Result run_plane(int axis, int plane) const {
     fine.run_plane(axis, plane);
-    const bool completes_pair = plane % 2 == 1 || plane == fine.rows.box.high[axis] - 1;
-    if (ratio[axis] == 1 || completes_pair) coarse.run_plane(axis, plane / ratio[axis]);
+    const int shifted = plane + shift[axis];
+    const bool completes_pair = shifted % 2 == 1 || plane == fine.rows.box.high[axis] - 1;
+    if (ratio[axis] == 1 || completes_pair) coarse.run_plane(axis, shifted / ratio[axis]);
     return {};
   }
   Result launch(const char* label) const {
@@ -298,6 +301,6 @@ struct CoarseningStage {
   }
 };
 template <class FineStage, class CoarseStage>
-CoarseningStage(FineStage, CoarseStage, Int3) -> CoarseningStage<FineStage, CoarseStage>;
+CoarseningStage(FineStage, CoarseStage, Int3, Int3) -> CoarseningStage<FineStage, CoarseStage>;
 
 }  // namespace peclet

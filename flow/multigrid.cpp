@@ -7,16 +7,21 @@
 namespace peclet::flow {
 namespace {
 
-/// Axes along which the cells are merged next: those whose spacing is close to the smallest.
-Int3 merge_ratio(const LevelShape& shape, const Real3& spacing) {
+/// Cells are merged along the axes whose spacing is close to the smallest. Of an odd number of cells the
+/// wider one of the two at the ends stays alone, so that neither becomes much smaller than the others.
+Merging next_merging(const LevelShape& shape, const Real3& spacing) {
   constexpr Real close = 1.42;  // square root of 2: keeps the ratio of the spacings below 2
   Real smallest = std::numeric_limits<Real>::infinity();
   for (int axis = 0; axis < 3; ++axis)
     if (shape.cells[axis] > 1) smallest = std::min(smallest, spacing[axis] * shape.factor[axis]);
-  Int3 ratio;
-  for (int axis = 0; axis < 3; ++axis)
-    ratio[axis] = shape.cells[axis] > 1 && spacing[axis] * shape.factor[axis] <= close * smallest ? 2 : 1;
-  return ratio;
+  Merging merging;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int n = shape.cells[axis];
+    if (n == 1 || spacing[axis] * shape.factor[axis] > close * smallest) continue;
+    merging.ratio[axis] = 2;
+    merging.shift[axis] = n % 2 == 1 && shape.width(axis, 0) > shape.width(axis, n - 1);
+  }
+  return merging;
 }
 
 /// Range of cells along one axis.
@@ -54,25 +59,24 @@ std::vector<Box> pieces_inside(const LevelShape& finest, const std::vector<Box>&
 Box covering_cells(const LevelShape& coarse, const Box& cells) {
   Box box;
   for (int axis = 0; axis < 3; ++axis) {
-    box.low[axis] = cells.low[axis] / coarse.factor[axis];
-    box.high[axis] = (cells.high[axis] - 1) / coarse.factor[axis] + 1;
+    box.low[axis] = (cells.low[axis] + coarse.offset[axis]) / coarse.factor[axis];
+    box.high[axis] = (cells.high[axis] - 1 + coarse.offset[axis]) / coarse.factor[axis] + 1;
   }
   return box;
 }
 
-RowRanges prolongation_rows(const RowRanges& rows, const Transfer& transfer) {
-  const Int3 ratio{transfer.ratio[0], 1, 1};
+RowRanges prolongation_rows(const RowRanges& rows, const Merging& merging) {
   RowRanges result = rows;
-  if (ratio[0] == 1) return result;
-  result.box.low[0] = rows.box.low[0] / 2;
-  result.box.high[0] = (rows.box.high[0] + 1) / 2;
+  if (merging.ratio[0] == 1) return result;
+  result.box.low[0] = merging.parent(0, rows.box.low[0]);
+  result.box.high[0] = merging.end_of_parents(0, rows.box.high[0]);
   if (!rows.first.data()) return result;
   const Index count = rows.number_of_rows();
   const Array<int> first("row_begin", count), last("row_end", count);
   for_each(
       "flow::rows", count, KOKKOS_LAMBDA(Index row) {
-        first(row) = rows.first(row) / 2;
-        last(row) = (rows.last(row) + 1) / 2;
+        first(row) = merging.parent(0, rows.first(row));
+        last(row) = merging.end_of_parents(0, rows.last(row));
       });
   result.first = first;
   result.last = last;
@@ -100,10 +104,10 @@ BasicMultigrid<reactive>::BasicMultigrid(const Int3& cells, const Real3& spacing
 
   stiffness_ = 1 / (smallest * smallest);
 
-  Int3 factor{1, 1, 1};
+  LevelShape shape(cells, sides);
   for (;;) {
     Level level;
-    level.shape = LevelShape(cells, factor, sides);
+    level.shape = shape;
     const std::string name = "multigrid_" + std::to_string(levels_.size());
     level.fields.rhs = Field<float>(name + ".rhs", level.shape.layout);
     level.fields.solution = Field<float>(name + ".solution", level.shape.layout);
@@ -121,9 +125,8 @@ BasicMultigrid<reactive>::BasicMultigrid(const Int3& cells, const Real3& spacing
     }
     levels_.push_back(level);
     if (level.shape.number_of_cells() <= (reactive ? 32 : CoarseSolver::largest_size)) break;
-    const Int3 ratio = merge_ratio(level.shape, spacing);
-    for (int axis = 0; axis < 3; ++axis) factor[axis] *= ratio[axis];
-    levels_.back().transfer.ratio = ratio;
+    levels_.back().transfer.merging = next_merging(shape, spacing);
+    shape = LevelShape(shape, levels_.back().transfer.merging);
   }
   coarse_solver_ = CoarseSolver(levels_.back().shape);
 }
@@ -141,9 +144,10 @@ void BasicMultigrid<reactive>::set_open_fractions(const FaceVector<OpenFraction>
     Level& level = levels_[l];
     const PressureSides& sides = level.shape.sides;
     level.rows = l == 0 ? aligned_rows(rows, level.shape)
-                        : coarse_rows(levels_[l - 1].rows, level.shape, levels_[l - 1].transfer.ratio);
+                        : coarse_rows(levels_[l - 1].rows, level.shape, levels_[l - 1].transfer.merging);
     level.plan = SweepPlan(level.shape.cells, level.rows.box,
-                           {sides.is_periodic(0), sides.is_periodic(1), sides.is_periodic(2)});
+                           {sides.is_periodic(0), sides.is_periodic(1), sides.is_periodic(2)},
+                           level.transfer.merging.shift);
     level.fields.rhs.fill(0);
     level.fields.solution.fill(0);
     level.fields.scratch.fill(0);
@@ -151,7 +155,7 @@ void BasicMultigrid<reactive>::set_open_fractions(const FaceVector<OpenFraction>
     Transfer& transfer = levels_[l - 1].transfer;
     transfer.coarse_shape = level.shape;
     transfer.coarse_rows = level.rows;
-    transfer.prolongation_rows = prolongation_rows(levels_[l - 1].rows, transfer);
+    transfer.prolongation_rows = prolongation_rows(levels_[l - 1].rows, transfer.merging);
   }
   update({Box{{0, 0, 0}, levels_[0].shape.cells}});
 }
@@ -161,15 +165,16 @@ void BasicMultigrid<reactive>::update(const std::vector<Box>& changed) {
   const std::vector<Box> pieces = pieces_inside(levels_[0].shape, changed);
   for (std::size_t l = 1; l < levels_.size(); ++l) {
     const LevelShape& shape = levels_[l].shape;
+    const Merging& merging = levels_[l - 1].transfer.merging;
     std::vector<Box> boxes;
     for (const Box& piece : pieces) boxes.push_back(covering_cells(shape, piece));
     changed_.assign(boxes);
     if (l == 1)
-      derive_coefficients<OpenFraction>(finest_, shape, changed_, levels_[l].coefficients);
+      derive_coefficients<OpenFraction>(finest_, shape, merging, changed_, levels_[l].coefficients);
     else
-      derive_coefficients<float>(levels_[l - 1].op, shape, changed_, levels_[l].coefficients);
+      derive_coefficients<float>(levels_[l - 1].op, shape, merging, changed_, levels_[l].coefficients);
     if constexpr (reactive)
-      derive_reaction(levels_[l - 1].shape, levels_[l - 1].reaction, shape, changed_, levels_[l].reaction);
+      derive_reaction(levels_[l - 1].shape, levels_[l - 1].reaction, merging, changed_, levels_[l].reaction);
   }
   set_coarse_operator();
 }

@@ -11,13 +11,15 @@ constexpr int vector_length = Layout::alignment;
 /// Sum of the fine coefficients on a coarse face normal to axis, scaled to the coarse distance.
 template <class Coefficient>
 KOKKOS_INLINE_FUNCTION float coarse_coefficient(const LevelOperator<Coefficient>& fine,
-                                                const LevelShape& coarse, int axis, const Int3& face) {
+                                                const LevelShape& coarse, const Merging& merging, int axis,
+                                                const Int3& face) {
   if (coarse.is_collapsed(axis)) return 0;
   Int3 low, high;
   for (int a = 0; a < 3; ++a) {
-    const int ratio = coarse.factor[a] / fine.shape.factor[a], n = fine.shape.cells[a];
-    low[a] = ratio * face[a] < n ? ratio * face[a] : n;
-    high[a] = a == axis ? low[a] + 1 : (low[a] + ratio < n ? low[a] + ratio : n);
+    const int n = fine.shape.cells[a];
+    const int first = merging.first_child(a, face[a]), end = merging.end_of_children(a, face[a]);
+    low[a] = first < n ? first : n;
+    high[a] = a == axis ? low[a] + 1 : (end < n ? end : n);
   }
   Real sum = 0;
   for (int k = low[2]; k < high[2]; ++k)
@@ -31,39 +33,45 @@ KOKKOS_INLINE_FUNCTION float coarse_coefficient(const LevelOperator<Coefficient>
 
 template <class Coefficient>
 void derive_coefficients(const LevelOperator<Coefficient>& fine, const LevelShape& coarse,
-                         const BoxList& boxes, const FaceVector<float>& coefficients) {
+                         const Merging& merging, const BoxList& boxes,
+                         const FaceVector<float>& coefficients) {
   const FaceVector<float> c = coefficients;
   for_each_cell(
       "flow::coarsen", boxes, KOKKOS_LAMBDA(int i, int j, int k) {
         const Int3 cell{i, j, k};
         for (int axis = 0; axis < 3; ++axis) {
           Int3 face = cell;
-          c[axis](face[0], face[1], face[2]) = coarse_coefficient(fine, coarse, axis, face);
+          c[axis](face[0], face[1], face[2]) = coarse_coefficient(fine, coarse, merging, axis, face);
           if (++face[axis] == coarse.cells[axis])
-            c[axis](face[0], face[1], face[2]) = coarse_coefficient(fine, coarse, axis, face);
+            c[axis](face[0], face[1], face[2]) = coarse_coefficient(fine, coarse, merging, axis, face);
         }
       });
 }
 
-template void derive_coefficients(const LevelOperator<OpenFraction>&, const LevelShape&, const BoxList&,
-                                  const FaceVector<float>&);
-template void derive_coefficients(const LevelOperator<float>&, const LevelShape&, const BoxList&,
-                                  const FaceVector<float>&);
+template void derive_coefficients(const LevelOperator<OpenFraction>&, const LevelShape&, const Merging&,
+                                  const BoxList&, const FaceVector<float>&);
+template void derive_coefficients(const LevelOperator<float>&, const LevelShape&, const Merging&,
+                                  const BoxList&, const FaceVector<float>&);
 
-void derive_reaction(const LevelShape& fine, const LevelReaction& fine_reaction, const LevelShape& coarse,
+void derive_reaction(const LevelShape& fine, const LevelReaction& fine_reaction, const Merging& merging,
                      const BoxList& boxes, const LevelReaction& coarse_reaction) {
   const LevelReaction from = fine_reaction, to = coarse_reaction;
   const LevelShape fine_shape = fine;
   const Real size = std::cbrt(static_cast<Real>(fine.factor[0]) * fine.factor[1] * fine.factor[2]);
   const Real resistance = 0.5 / size;
-  Int3 ratio;
-  for (int axis = 0; axis < 3; ++axis) ratio[axis] = coarse.factor[axis] / fine.factor[axis];
   for_each_cell(
       "flow::coarsen_reaction", boxes, KOKKOS_LAMBDA(int i, int j, int k) {
+        const Int3 cell{i, j, k};
+        Int3 low, high;
+        for (int axis = 0; axis < 3; ++axis) {
+          const int end = merging.end_of_children(axis, cell[axis]), n = fine_shape.cells[axis];
+          low[axis] = merging.first_child(axis, cell[axis]);
+          high[axis] = end < n ? end : n;
+        }
         Real exchange = 0, volume = 0;
-        for (int c = k * ratio[2]; c < (k + 1) * ratio[2] && c < fine_shape.cells[2]; ++c)
-          for (int b = j * ratio[1]; b < (j + 1) * ratio[1] && b < fine_shape.cells[1]; ++b)
-            for (int a = i * ratio[0]; a < (i + 1) * ratio[0] && a < fine_shape.cells[0]; ++a) {
+        for (int c = low[2]; c < high[2]; ++c)
+          for (int b = low[1]; b < high[1]; ++b)
+            for (int a = low[0]; a < high[0]; ++a) {
               const Real total = from.total(a, b, c);
               if (!(total > 0)) continue;
               const Real own = from.volume.data() ? from.volume(a, b, c) : from.finest_volume;
@@ -77,14 +85,14 @@ void derive_reaction(const LevelShape& fine, const LevelReaction& fine_reaction,
 }
 
 RowRanges aligned_rows(const RowRanges& rows, const LevelShape& shape) {
-  return coarse_rows(rows, shape, Int3{1, 1, 1});
+  return coarse_rows(rows, shape, Merging());
 }
 
-RowRanges coarse_rows(const RowRanges& fine, const LevelShape& coarse, const Int3& ratio) {
+RowRanges coarse_rows(const RowRanges& fine, const LevelShape& coarse, const Merging& merging) {
   Box box;
   for (int axis = 0; axis < 3; ++axis) {
-    box.low[axis] = fine.box.low[axis] / ratio[axis];
-    box.high[axis] = (fine.box.high[axis] + ratio[axis] - 1) / ratio[axis];
+    box.low[axis] = merging.parent(axis, fine.box.low[axis]);
+    box.high[axis] = merging.end_of_parents(axis, fine.box.high[axis]);
   }
   const int n = coarse.cells[0];
   box.low[0] = box.low[0] / vector_length * vector_length;
@@ -98,9 +106,8 @@ RowRanges coarse_rows(const RowRanges& fine, const LevelShape& coarse, const Int
       "flow::rows", number_of_rows, KOKKOS_LAMBDA(Index row) {
         const int j = box.low[1] + static_cast<int>(row % ny), k = box.low[2] + static_cast<int>(row / ny);
         int begin = fine.box.high[0], end = fine.box.low[0];
-        for (int dk = 0; dk < ratio[2]; ++dk)
-          for (int dj = 0; dj < ratio[1]; ++dj) {
-            const int fj = j * ratio[1] + dj, fk = k * ratio[2] + dk;
+        for (int fk = merging.first_child(2, k); fk < merging.end_of_children(2, k); ++fk)
+          for (int fj = merging.first_child(1, j); fj < merging.end_of_children(1, j); ++fj) {
             if (!fine.box.contains(fine.box.low[0], fj, fk)) continue;
             const Index n = (fj - fine.box.low[1]) + (fk - fine.box.low[2]) * fine_ny;
             if (fine.begin(n) >= fine.end(n)) continue;
@@ -108,8 +115,8 @@ RowRanges coarse_rows(const RowRanges& fine, const LevelShape& coarse, const Int
             end = fine.end(n) > end ? fine.end(n) : end;
           }
         if (begin < end) {
-          begin = begin / ratio[0] / vector_length * vector_length;
-          end = ((end + ratio[0] - 1) / ratio[0] + vector_length - 1) / vector_length * vector_length;
+          begin = merging.parent(0, begin) / vector_length * vector_length;
+          end = (merging.end_of_parents(0, end) + vector_length - 1) / vector_length * vector_length;
         }
         first(row) = begin < end ? begin : 0;
         last(row) = begin < end ? (end < n ? end : n) : 0;

@@ -15,19 +15,45 @@
 
 namespace peclet::flow {
 
-/// Cells of one level. Along axis a, cell I covers the finest cells I factor[a] to (I + 1) factor[a] - 1,
-/// as far as they exist: the last cell may be smaller.
+/// How the cells of a level merge into those of the next coarser one. Along an axis with ratio 2 and shift s,
+/// coarse cell I has the children 2 I - s and 2 I - s + 1, as far as they exist: of an odd number of cells
+/// the last one (s = 0) or the first one (s = 1) stays alone.
+struct Merging {
+  Int3 ratio{1, 1, 1}, shift{0, 0, 0};
+
+  KOKKOS_INLINE_FUNCTION int first_child(int axis, int cell) const {
+    const int child = ratio[axis] * cell - shift[axis];
+    return child > 0 ? child : 0;
+  }
+  /// One past the last child, if there were no end of the row.
+  KOKKOS_INLINE_FUNCTION int end_of_children(int axis, int cell) const {
+    return ratio[axis] * (cell + 1) - shift[axis];
+  }
+  KOKKOS_INLINE_FUNCTION int parent(int axis, int cell) const { return (cell + shift[axis]) / ratio[axis]; }
+  /// One past the last parent of the cells before this one.
+  KOKKOS_INLINE_FUNCTION int end_of_parents(int axis, int cell) const {
+    return (cell + shift[axis] + ratio[axis] - 1) / ratio[axis];
+  }
+};
+
+/// Cells of one level. Along axis a, cell I covers the finest cells from I factor[a] - offset[a] to
+/// (I + 1) factor[a] - offset[a] - 1, as far as they exist: the first and the last cell may be smaller.
 struct LevelShape {
   Int3 cells{1, 1, 1};
   Int3 finest_cells{1, 1, 1};
-  Int3 factor{1, 1, 1};
+  Int3 factor{1, 1, 1}, offset{0, 0, 0};
   Layout layout;
   PressureSides sides;
 
   LevelShape() = default;
-  LevelShape(const Int3& finest, const Int3& coarsening, const PressureSides& box_sides)
-      : finest_cells(finest), factor(coarsening), sides(box_sides) {
-    for (int axis = 0; axis < 3; ++axis) cells[axis] = (finest[axis] + factor[axis] - 1) / factor[axis];
+  LevelShape(const Int3& finest, const PressureSides& box_sides)
+      : cells(finest), finest_cells(finest), layout(finest), sides(box_sides) {}
+  LevelShape(const LevelShape& finer, const Merging& merging) : LevelShape(finer) {
+    for (int axis = 0; axis < 3; ++axis) {
+      cells[axis] = merging.end_of_parents(axis, finer.cells[axis]);
+      offset[axis] += merging.shift[axis] * factor[axis];
+      factor[axis] *= merging.ratio[axis];
+    }
     layout = Layout(cells);
   }
   Index number_of_cells() const { return static_cast<Index>(cells[0]) * cells[1] * cells[2]; }
@@ -37,8 +63,8 @@ struct LevelShape {
   }
   /// Width of a cell along axis in finest cells.
   KOKKOS_INLINE_FUNCTION int width(int axis, int cell) const {
-    const int rest = finest_cells[axis] - cell * factor[axis];
-    return rest < factor[axis] ? rest : factor[axis];
+    const int begin = cell * factor[axis] - offset[axis], end = begin + factor[axis];
+    return (end < finest_cells[axis] ? end : finest_cells[axis]) - (begin > 0 ? begin : 0);
   }
   /// Twice the distance of the two cell centres beside a face, in finest cells.
   KOKKOS_INLINE_FUNCTION int twice_distance(int axis, int face) const {
@@ -233,7 +259,7 @@ struct ReactiveOperator : LevelOperator<Coefficient> {
 };
 
 /// Rows of a level: they cover the rows of the children, and begin and end on whole vectors where they can.
-RowRanges coarse_rows(const RowRanges& fine, const LevelShape& coarse, const Int3& ratio);
+RowRanges coarse_rows(const RowRanges& fine, const LevelShape& coarse, const Merging& merging);
 /// The same rows, widened to whole vectors.
 RowRanges aligned_rows(const RowRanges& rows, const LevelShape& shape);
 
@@ -241,7 +267,7 @@ RowRanges aligned_rows(const RowRanges& rows, const LevelShape& shape);
 /// centres; on the faces of the cells of the boxes.
 template <class Coefficient>
 void derive_coefficients(const LevelOperator<Coefficient>& fine, const LevelShape& coarse,
-                         const BoxList& boxes, const FaceVector<float>& coefficients);
+                         const Merging& merging, const BoxList& boxes, const FaceVector<float>& coefficients);
 
 /// Reaction of one level: a part in proportion to the volume, and exchange with what lies outside (walls).
 struct LevelReaction {
@@ -252,7 +278,7 @@ struct LevelReaction {
 
 /// Coarse reaction of the cells of the boxes: the sum over the children, from whose centre the centre of the
 /// coarse cell is half a child's width away, which adds to the resistance of the exchange.
-void derive_reaction(const LevelShape& fine, const LevelReaction& fine_reaction, const LevelShape& coarse,
+void derive_reaction(const LevelShape& fine, const LevelReaction& fine_reaction, const Merging& merging,
                      const BoxList& boxes, const LevelReaction& coarse_reaction);
 
 }  // namespace peclet::flow

@@ -61,7 +61,7 @@ PressureSolver::PressureSolver(const Grid& grid, const PressureSides& sides) : p
   parts_->grid = grid;
   parts_->sides = sides;
   parts_->multigrid = Multigrid(grid.cells, grid.spacing, sides);
-  const LevelShape shape(grid.cells, Int3{1, 1, 1}, sides);
+  const LevelShape shape(grid.cells, sides);
   parts_->regions = FluidRegions(shape);
   parts_->search = Field<float>("pressure_search", shape.layout);
 }

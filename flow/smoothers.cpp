@@ -95,7 +95,7 @@ struct SumOfChildren {
   using Result = Nothing;
   static constexpr bool may_overrun = false;
   LevelShape fine_shape, coarse_shape;
-  Int3 ratio;
+  Merging merging;
   float* fine;
   float* coarse;
 
@@ -103,30 +103,35 @@ struct SumOfChildren {
     const float *first, *next_y, *next_z, *next_yz;
     float has_y, has_z;
     float* coarse;
-    int last;  ///< children of the last cell beyond the end of the row do not count
+    int shift, n;  ///< children beyond the ends of the row do not count
     KOKKOS_INLINE_FUNCTION float column(int i) const {
       return first[i] + has_y * next_y[i] + has_z * (next_z[i] + has_y * next_yz[i]);
     }
     KOKKOS_INLINE_FUNCTION void operator()(int i) const {
       if constexpr (RatioX == 1) {
         coarse[i] = column(i);
-      } else if constexpr (runs_on_host) {
-        coarse[i] = column(2 * i) + column(2 * i + 1);
       } else {
-        coarse[i] = column(2 * i) + (2 * i < last ? column(2 * i + 1) : 0);
+        const int low = 2 * i - shift, high = low + 1;
+        if constexpr (runs_on_host)
+          coarse[i] = column(low) + column(high);
+        else
+          coarse[i] = (low >= 0 ? column(low) : 0) + (high < n ? column(high) : 0);
       }
     }
   };
   KOKKOS_INLINE_FUNCTION Row row(int J, int K) const {
-    const int j = J * ratio[1], k = K * ratio[2];
-    const int n = fine_shape.cells[0];
-    const bool has_y = ratio[1] == 2 && j + 1 < fine_shape.cells[1];
-    const bool has_z = ratio[2] == 2 && k + 1 < fine_shape.cells[2];
+    const int j = merging.first_child(1, J), k = merging.first_child(2, K);
+    const int n = fine_shape.cells[0], shift = merging.shift[0];
+    const bool has_y = j + 1 < merging.end_of_children(1, J) && j + 1 < fine_shape.cells[1];
+    const bool has_z = k + 1 < merging.end_of_children(2, K) && k + 1 < fine_shape.cells[2];
     float* const first = fine + fine_shape.layout(0, j, k);
     float* const next_y = first + has_y * fine_shape.layout.pitch_y;
     float* const next_z = first + has_z * fine_shape.layout.pitch_z;
     float* const next_yz = next_y + (next_z - first);
-    if (runs_on_host) first[n] = next_y[n] = next_z[n] = next_yz[n] = 0;
+    if (runs_on_host) {
+      const int beyond = shift == 1 ? -1 : n;
+      first[beyond] = next_y[beyond] = next_z[beyond] = next_yz[beyond] = 0;
+    }
     return {first,
             next_y,
             next_z,
@@ -134,7 +139,8 @@ struct SumOfChildren {
             has_y ? 1.f : 0.f,
             has_z ? 1.f : 0.f,
             coarse + coarse_shape.layout(0, J, K),
-            n - 1};
+            shift,
+            n};
   }
 };
 
@@ -144,7 +150,7 @@ struct AddToChildren {
   using Result = Nothing;
   static constexpr bool may_overrun = false;
   LevelShape fine_shape, coarse_shape;
-  Int3 ratio;
+  Merging merging;
   const float* coarse;
   float* fine;
 
@@ -155,13 +161,14 @@ struct AddToChildren {
       if constexpr (RatioX == 1) {
         fine[i] += coarse[i];
       } else {
-        fine[2 * i] += coarse[i];
-        fine[2 * i + 1] += coarse[i];  // beyond the end of an odd row: a ghost, overwritten before it is read
+        fine[2 * i] += coarse[i];  // beyond the ends of an odd row: a ghost, overwritten before it is read
+        fine[2 * i + 1] += coarse[i];
       }
     }
   };
   KOKKOS_INLINE_FUNCTION Row row(int j, int k) const {
-    return {coarse + coarse_shape.layout(0, j / ratio[1], k / ratio[2]), fine + fine_shape.layout(0, j, k)};
+    return {coarse + coarse_shape.layout(0, merging.parent(1, j), merging.parent(2, k)),
+            fine + fine_shape.layout(-merging.shift[0], j, k)};
   }
 };
 
@@ -190,11 +197,11 @@ void smooth_and_restrict_by(const Operator& op, const SweepPlan& plan, const Row
   float* const scratch = fields.scratch.array().data();
   sweep("flow::smooth", plan, Stage{rows, FirstStep<Operator>{op, rhs, scratch, first_weight}},
         Stage{rows, JacobiStep<Operator, Nothing>{op, rhs, scratch, solution, second_weight}},
-        CoarseningStage{
-            Stage{rows, Residual<Operator>{op, rhs, solution, scratch}},
-            Stage{transfer.coarse_rows, SumOfChildren<RatioX>{op.shape, transfer.coarse_shape, transfer.ratio,
-                                                              scratch, coarse_rhs.array().data()}},
-            transfer.ratio});
+        CoarseningStage{Stage{rows, Residual<Operator>{op, rhs, solution, scratch}},
+                        Stage{transfer.coarse_rows,
+                              SumOfChildren<RatioX>{op.shape, transfer.coarse_shape, transfer.merging,
+                                                    scratch, coarse_rhs.array().data()}},
+                        transfer.merging.ratio, transfer.merging.shift});
 }
 
 template <int RatioX, class Operator>
@@ -206,7 +213,7 @@ Real prolong_and_smooth_by(const Operator& op, const SweepPlan& plan, const RowR
   float* const scratch = fields.scratch.array().data();
   return sweep("flow::smooth", plan,
                Stage{transfer.prolongation_rows,
-                     AddToChildren<RatioX>{op.shape, transfer.coarse_shape, transfer.ratio,
+                     AddToChildren<RatioX>{op.shape, transfer.coarse_shape, transfer.merging,
                                            coarse_solution.array().data(), solution}},
                Stage{rows, JacobiStep<Operator, Nothing>{op, rhs, solution, scratch, first_weight}},
                Stage{rows, JacobiStep<Operator, Total>{op, rhs, scratch, solution, second_weight}})
@@ -219,7 +226,7 @@ template <class Operator>
 void smooth_and_restrict(const Operator& op, const SweepPlan& plan, const RowRanges& rows,
                          const Transfer& transfer, const LevelFields& fields,
                          const Field<float>& coarse_rhs) {
-  if (transfer.ratio[0] == 2)
+  if (transfer.merging.ratio[0] == 2)
     smooth_and_restrict_by<2>(op, plan, rows, transfer, fields, coarse_rhs);
   else
     smooth_and_restrict_by<1>(op, plan, rows, transfer, fields, coarse_rhs);
@@ -229,7 +236,7 @@ template <class Operator>
 Real prolong_and_smooth(const Operator& op, const SweepPlan& plan, const RowRanges& rows,
                         const Transfer& transfer, const LevelFields& fields,
                         const Field<float>& coarse_solution) {
-  if (transfer.ratio[0] == 2)
+  if (transfer.merging.ratio[0] == 2)
     return prolong_and_smooth_by<2>(op, plan, rows, transfer, fields, coarse_solution);
   return prolong_and_smooth_by<1>(op, plan, rows, transfer, fields, coarse_solution);
 }

@@ -18,7 +18,7 @@ struct LevelFields {
 
 /// Connection of a level with the next coarser one.
 struct Transfer {
-  Int3 ratio{1, 1, 1};  ///< cells per coarse cell, 1 or 2
+  Merging merging;
   LevelShape coarse_shape;
   RowRanges coarse_rows;        ///< cells of the coarse level
   RowRanges prolongation_rows;  ///< rows of this level, cells of the coarse level along them

@@ -73,6 +73,59 @@ TEST(Sweep, StagesSeeWhatTheStageBeforeWrote) {
   }
 }
 
+/// coarse = sum of the planes 2 K - shift and 2 K - shift + 1, as far as they exist.
+struct AddPlanes {
+  using Result = Nothing;
+  static constexpr bool may_overrun = false;
+  Layout fine_layout, coarse_layout;
+  int shift;
+  const Real* fine;
+  Real* coarse;
+
+  struct Row {
+    const Real *low, *high;
+    Real* coarse;
+    KOKKOS_INLINE_FUNCTION void operator()(int i) const {
+      coarse[i] = (low ? low[i] : 0) + (high ? high[i] : 0);
+    }
+  };
+  KOKKOS_INLINE_FUNCTION Row row(int j, int k) const {
+    const int low = 2 * k - shift, high = low + 1;
+    return {low >= 0 ? fine + fine_layout(0, j, low) : nullptr,
+            high < fine_layout.cells[2] ? fine + fine_layout(0, j, high) : nullptr,
+            coarse + coarse_layout(0, j, k)};
+  }
+};
+
+TEST(Sweep, CoarsensPairsOfPlanesThatBeginAtEitherParity) {
+  for (const int planes : {9, 33, 64, 95})
+    for (const int shift : {0, 1}) {
+      const Int3 n{21, 37, planes}, coarse_n{n[0], n[1], (planes + shift + 1) / 2};
+      const Layout layout(n), coarse_layout(coarse_n);
+      const Field<Real> in = integers(n), a("a", layout), b("b", layout), c("c", layout);
+      const Field<Real> found("found", coarse_layout), expected("expected", coarse_layout);
+      const bool wraps[3] = {true, true, true};
+      const auto coarsen = [&](const Field<Real>& fine, const Field<Real>& coarse) {
+        return Stage(RowRanges(coarse_n),
+                     AddPlanes{layout, coarse_layout, shift, fine.data(), coarse.data()});
+      };
+      sweep("test", SweepPlan(n, Box{{0, 0, 0}, n}, wraps, {0, 0, shift}),
+            Stage{RowRanges(n), AddNeighbours{layout, n, in.data(), a.data()}},
+            Stage{RowRanges(n), AddNeighbours{layout, n, a.data(), b.data()}},
+            CoarseningStage{Stage{RowRanges(n), AddNeighbours{layout, n, b.data(), a.data()}},
+                            coarsen(a, found),
+                            {1, 1, 2},
+                            {0, 0, shift}});
+      plain(n, in, b);
+      plain(n, b, c);
+      plain(n, c, a);
+      sweep("test", SweepPlan(coarse_n, Box{{0, 0, 0}, coarse_n}, wraps), coarsen(a, expected));
+      for (int k = 0; k < coarse_n[2]; ++k)
+        for (int j = 0; j < n[1]; ++j)
+          for (int i = 0; i < n[0]; ++i) ASSERT_EQ(found(i, j, k), expected(i, j, k)) << planes << " " << k;
+    }
+}
+
 TEST(Sweep, ASeriesIsItsStagesOneAfterTheOther) {
   for (const Int3& n : {Int3{6, 1, 5}, Int3{7, 3, 4}, Int3{20, 24, 64}, Int3{33, 41, 2}})
     for (const int repetitions : {0, 1, 2, 9}) {

@@ -21,7 +21,7 @@ TEST(CoarseSolver, InvertsOnEachRegionUpToTheMean) {
     return is_hole(i, j, k) || is_hole(lower[0], lower[1], lower[2]) ? 0 : fully_open;
   };
   const auto open = make_faces(n, sides, faces);
-  const LevelShape shape(n, {1, 1, 1}, sides);
+  const LevelShape shape(n, sides);
   const LevelOperator<OpenFraction> op(shape, open,
                                        {open_fraction_unit, open_fraction_unit, open_fraction_unit});
   const CoarseSolver solver(shape);

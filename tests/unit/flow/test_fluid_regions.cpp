@@ -67,7 +67,7 @@ TEST(FluidRegions, AreThoseOfAFlood) {
         PressureSides sides;
         for (auto& axis : sides.side) axis[0] = axis[1] = side;
         const auto open = make_faces(n, sides, random_faces(n, percent_open, 7));
-        const LevelShape shape(n, {1, 1, 1}, sides);
+        const LevelShape shape(n, sides);
         FluidRegions regions(shape);
         regions.find(LevelOperator<OpenFraction>(shape, open, {1, 1, 1}));
         const Flood expected = flood(open, sides);
@@ -83,7 +83,7 @@ TEST(FluidRegions, MeansVanishWhereNoFixedSideTouches) {
   const PressureSides sides =
       sides_of(PressureSide::Fixed, PressureSide::Closed, PressureSide::Periodic, PressureSide::Closed);
   const auto open = make_faces(n, sides, random_faces(n, 22, 3));
-  const LevelShape shape(n, {1, 1, 1}, sides);
+  const LevelShape shape(n, sides);
   FluidRegions regions(shape);
   regions.find(LevelOperator<OpenFraction>(shape, open, {1, 1, 1}));
   const Field<Real> rhs = random_field(n, 51, 2), original = random_field(n, 51, 2);
@@ -114,7 +114,7 @@ TEST(FluidRegions, UpdateEqualsANewSearch) {
   const Int3 n{70, 20, 16};
   const PressureSides sides;
   const auto open = make_faces(n, sides, random_faces(n, 30, 1));
-  const LevelShape shape(n, {1, 1, 1}, sides);
+  const LevelShape shape(n, sides);
   const LevelOperator<OpenFraction> op(shape, open, {1, 1, 1});
   FluidRegions regions(shape);
   regions.find(op);
