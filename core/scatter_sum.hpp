@@ -40,13 +40,23 @@ class ScatterSum {
   const Bins& bins() const { return bins_; }
   int chunks() const { return chunks_; }
 
+  /// The sums of all chunks, callable in kernels; the chunks are spent.
+  const Array<Real>& join_chunks() {
+    const Bins bins = bins_;
+    const int chunks = chunks_;
+    if (chunks > 1)
+      for_each(
+          "core::join_chunks", bins.count, KOKKOS_LAMBDA(Index bin) {
+            for (int chunk = 1; chunk < chunks; ++chunk)
+              bins.sums(bin) += bins.sums(static_cast<Index>(chunk) * bins.count + bin);
+          });
+    chunks_ = 1;
+    return bins_.sums;
+  }
+
   std::vector<Real> totals() {
-    Kokkos::deep_copy(host_, bins_.sums);
-    std::vector<Real> total(static_cast<std::size_t>(bins_.count), 0.0);
-    for (int chunk = 0; chunk < chunks_; ++chunk)
-      for (int bin = 0; bin < bins_.count; ++bin)
-        total[static_cast<std::size_t>(bin)] += host_(static_cast<Index>(chunk) * bins_.count + bin);
-    return total;
+    Kokkos::deep_copy(host_, join_chunks());
+    return {host_.data(), host_.data() + bins_.count};
   }
 
  private:

@@ -52,7 +52,7 @@ void add_wall_tractions(int c, const MomentumTerms& terms, const SolidSampler& s
           if (!w.is_wall(row, d)) continue;
           const int a = d / 2, owner = w.owner(row, d);
           Vec3 wall = x;
-          wall[a] += (d % 2 ? 1 : -1) * t.grid.spacing[a] * w.wall_distance(row, d);
+          wall[a] += (d % 2 ? 1 : -1) * t.grid.spacing[a] * w.distance(row, d);
           Real laplacian = w.weight(row, d) * (wall_velocity(sampler, gap, owner, c, wall) - here);
           if (!w.is_wall(row, d ^ 1)) {
             const Index q = d % 2 ? p - layout.stride(a) : p + layout.stride(a);

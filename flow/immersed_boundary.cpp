@@ -206,8 +206,9 @@ ImmersedBoundary::ImmersedBoundary(const Grid& grid, const DomainSides& sides)
   marks_ = Field<int>("flow::cell_marks", layout);
 }
 
-void ImmersedBoundary::build(Bodies& bodies, const Field<Real>& samples, Real viscous_area) {
+void ImmersedBoundary::build(Bodies& bodies, const Field<Real>& samples, const WallFriction& friction) {
   solid_.samples = samples;
+  friction_ = friction;
   sample_fixed(bodies);
   regions_.clear();
   surfaces_.clear();
@@ -224,7 +225,7 @@ void ImmersedBoundary::build(Bodies& bodies, const Field<Real>& samples, Real vi
     Kokkos::deep_copy(fixed_owner_.array(), solid_.owner.array());
     for (int a = 0; a < 3; ++a) Kokkos::deep_copy(fixed_open_[a].array(), open_[a].array());
   }
-  update(bodies, Field<Real>(), viscous_area);
+  update(bodies, Field<Real>(), friction);
   changed_ = {Box{{0, 0, 0}, grid_.cells}};
 }
 
@@ -255,12 +256,12 @@ void ImmersedBoundary::sample_fixed(Bodies& bodies) {
   find_near_cells(marks_, sides_, whole, scratch, near);
   for (int c = 0; c < 3; ++c) {
     build_wall_rows(c, solid_, open_, sides_, near, scratch, fixed_rows_[c]);
-    refresh_wall_velocity(c, solid_, fixed_rows_[c]);
+    refresh_wall_motion(c, solid_, friction_.viscosity, fixed_rows_[c]);
   }
 }
 
-void ImmersedBoundary::update(Bodies& bodies, const Field<Real>& pressure, Real viscous_area) {
-  viscous_area_ = viscous_area;
+void ImmersedBoundary::update(Bodies& bodies, const Field<Real>& pressure, const WallFriction& friction) {
+  friction_ = friction;
   if (pressure.is_allocated()) extrapolate_pressure(open_, sides_, near_, pressure);
   const bool had_regions = !regions_.empty();
   const int margin = surface_margin(grid_);
@@ -301,7 +302,7 @@ void ImmersedBoundary::sample_moving() {
     fill_mirrored_ghosts(solid_.sdf, sides_, 1);
     fill_mirrored_ghosts(solid_.owner, sides_, 1);
   }
-  open_moving_faces(FaceOpener(solid_, viscous_area_), band_, open_, marks_);
+  open_moving_faces(FaceOpener(solid_, friction_.area()), band_, open_, marks_);
   if (has_ghosts) fill_open_ghosts(open_, solid_.sdf, sides_);
   find_near_cells(marks_, sides_, band_, scratch_, near_);
   number_near_cells(near_, marks_);
@@ -309,7 +310,7 @@ void ImmersedBoundary::sample_moving() {
     mark_superseded(marks_, fixed_rows_[c]);
     build_wall_rows(c, solid_, open_, sides_, near_, scratch_, moving_rows_[c]);
     std::swap(former_slits_[c], slits_[c]);
-    build_slits(c, solid_, open_, viscous_area_, near_, scratch_, slits_[c]);
+    build_slits(c, solid_, open_, friction_.area(), near_, scratch_, slits_[c]);
     build_body_faces(c, solid_, open_, sides_, near_, scratch_, body_faces_[c]);
   }
   build_cut_cells(open_, sides_, near_, scratch_, cut_cells_);
@@ -338,7 +339,7 @@ void ImmersedBoundary::refresh_face_velocity(Bodies& bodies) {
 
 void ImmersedBoundary::refresh_velocity(Bodies& bodies) {
   refresh_face_velocity(bodies);
-  for (int c = 0; c < 3; ++c) refresh_wall_velocity(c, solid_, moving_rows_[c]);
+  for (int c = 0; c < 3; ++c) refresh_wall_motion(c, solid_, friction_.viscosity, moving_rows_[c]);
   refresh_cut_cells(solid_, open_, sides_, near_, marks_, cut_cells_);
 }
 

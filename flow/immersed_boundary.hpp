@@ -8,6 +8,7 @@
 #include "flow/near_cells.hpp"
 #include "flow/open_faces.hpp"
 #include "flow/region_list.hpp"
+#include "flow/settings.hpp"
 #include "flow/slits.hpp"
 #include "flow/solid_sampler.hpp"
 #include "flow/wall_rows.hpp"
@@ -19,11 +20,10 @@ class ImmersedBoundary {
   ImmersedBoundary(const Grid& grid, const DomainSides& sides);
 
   /// Sample everything: fixed bodies and, if allocated, the solid given as distances at cell centres.
-  /// viscous_area: nu dt, see flow/slits.hpp.
-  void build(Bodies& bodies, const Field<Real>& samples, Real viscous_area);
+  void build(Bodies& bodies, const Field<Real>& samples, const WallFriction& friction);
   /// Re-sample the moving bodies. Before the geometry changes, the pressure of closed cells beside open ones
   /// is extrapolated into them, so that freshly uncovered cells start from it.
-  void update(Bodies& bodies, const Field<Real>& pressure, Real viscous_area);
+  void update(Bodies& bodies, const Field<Real>& pressure, const WallFriction& friction);
   /// Only the velocities of the bodies changed.
   void refresh_velocity(Bodies& bodies);
   /// The same for closed faces and slits alone, before a geometry update.
@@ -45,7 +45,7 @@ class ImmersedBoundary {
   /// Fluid points of component c of the fixed geometry that are none now.
   Real covered_points(int c) const;
   bool has_slits() const { return slits_[0].count + slits_[1].count + slits_[2].count > 0; }
-  Real viscous_area() const { return viscous_area_; }
+  const WallFriction& friction() const { return friction_; }
   std::size_t bytes() const;
 
  private:
@@ -66,7 +66,7 @@ class ImmersedBoundary {
   std::vector<Box> surfaces_, changed_;  // surfaces_: one box per region
   bool reached_sides_ = false;
   Array<Index> scratch_;
-  Real viscous_area_ = 0;
+  WallFriction friction_;
   WallRows fixed_rows_[3], moving_rows_[3];
   Slits slits_[3], former_slits_[3];
   BodyFaces body_faces_[3];

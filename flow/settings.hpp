@@ -25,6 +25,16 @@ struct Settings {
   int pressure_iteration_limit = 200;
 };
 
+/// What the friction of walls depends on besides the geometry.
+struct WallFriction {
+  Real viscosity = 0;  // kinematic
+  Real time_step = 0;
+
+  /// nu dt
+  Real area() const { return viscosity * time_step; }
+  bool operator==(const WallFriction&) const = default;
+};
+
 /// How one implicit solve went.
 struct SolverReport {
   int iterations = 0;

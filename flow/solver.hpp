@@ -8,6 +8,7 @@
 
 #include "flow/bodies.hpp"
 #include "flow/body_loads.hpp"
+#include "flow/covered_points.hpp"
 #include "flow/domain_sides.hpp"
 #include "flow/immersed_boundary.hpp"
 #include "flow/momentum.hpp"
@@ -131,7 +132,7 @@ class Solver {
   /// Closed faces in the state move with their body.
   void impose_body_motion();
   /// nu dt, on which the slits depend.
-  Real viscous_area() const;
+  WallFriction wall_friction() const;
   /// All faces whose centre is solid move with their body.
   void impose_walls(const FaceVector<Real>& velocity) const;
   void take_requested_sides();
@@ -170,6 +171,7 @@ class Solver {
   PressureSolver pressure_solver_;
   Scalars scalars_;
   LoadCollector load_collector_;
+  CoveredPoints covered_points_;
   std::vector<BodyLoad> loads_;
   SolverReport velocity_report_, pressure_report_;
   StepTimes times_;

@@ -22,7 +22,7 @@ void Solver::build_geometry(bool keep_flow) {
   take_requested_sides();
   take_requested_poses();
   if (samples_.is_allocated()) fill_mirrored_ghosts(samples_, sides_);
-  boundary_.build(bodies_, samples_, viscous_area());
+  boundary_.build(bodies_, samples_, wall_friction());
   geometry_rebuilt();
   if (!keep_flow) {
     for (int c = 0; c < 3; ++c) velocity_[c].fill(0);
@@ -36,7 +36,9 @@ void Solver::build_geometry(bool keep_flow) {
   velocity_changed();
 }
 
-Real Solver::viscous_area() const { return settings_.viscosity / settings_.density * settings_.time_step; }
+WallFriction Solver::wall_friction() const {
+  return {settings_.viscosity / settings_.density, settings_.time_step};
+}
 
 /// Bodies about to move so far at once that the flow in their slits says nothing about what they uncover.
 std::vector<int> Solver::bodies_that_leap() {
@@ -194,7 +196,7 @@ void Solver::promote_moved_bodies() {
     promoted = true;
   }
   if (!promoted || !built_) return;
-  boundary_.build(bodies_, samples_, viscous_area());
+  boundary_.build(bodies_, samples_, wall_friction());
   geometry_rebuilt();
 }
 
@@ -208,10 +210,14 @@ void Solver::update_geometry() {
   impose_body_motion();
   const std::vector<int> leaping = bodies_that_leap();
   take_requested_poses();
-  boundary_.update(bodies_, pressure_, viscous_area());
+  for (int c = 0; c < 3; ++c) covered_points_.remember(c, boundary_.moving_rows(c));
+  boundary_.update(bodies_, pressure_, wall_friction());
   pressure_solver_.update_open_fractions(boundary_.changed());
   if (!boundary_.changed().empty()) scalars_.geometry_changed();
   subtract_covered_points();
+  for (int c = 0; c < 3; ++c)
+    covered_points_.hand_on(c, boundary_.solid(), boundary_.open()[c], bodies_.count(), velocity_[c],
+                            previous_[c]);
   for (const int b : leaping)
     for (int c = 0; c < 3; ++c)
       for (const Field<Real>& u : {velocity_[c], previous_[c]})

@@ -7,6 +7,7 @@ void WallRows::reserve(Index capacity) {
   if (face.extent(0) >= n) return;
   const std::size_t size = face.extent(0) == 0 ? n : n + n / 4;
   face = Array<Index>("flow::wall_rows.face", size);
+  distance = Kokkos::View<float* [directions], MemorySpace>("flow::wall_rows.distance", size);
   weight = Kokkos::View<float* [directions], MemorySpace>("flow::wall_rows.weight", size);
   owner = Kokkos::View<int* [directions], MemorySpace>("flow::wall_rows.owner", size);
   walls = Array<std::uint8_t>("flow::wall_rows.walls", size);
@@ -18,7 +19,7 @@ void WallRows::reserve(Index capacity) {
 
 namespace {
 
-/// Weights and owners of the row of component c at the low face of a cell.
+/// Distances and owners of the row of component c at the low face of a cell.
 KOKKOS_INLINE_FUNCTION void fill_row(const WallRows& rows, Index row, int c, const SolidSampler& solid,
                                      const FaceVector<OpenFraction>& open, const DomainSides& sides,
                                      const Int3& at) {
@@ -28,11 +29,10 @@ KOKKOS_INLINE_FUNCTION void fill_row(const WallRows& rows, Index row, int c, con
   const int nearest = nearest_owner(solid, c, p, x);
   int walls = 0;
   for (int a = 0; a < 3; ++a) {
-    Real distance[2];
     for (int s = 0; s < 2; ++s) {
       const int d = 2 * a + s;
       const Index q = p + (s ? layout.stride(a) : -layout.stride(a));
-      distance[s] = 1;
+      rows.distance(row, d) = 1;
       rows.owner(row, d) = nearest;
       if (is_fluid(open[c][q])) continue;
       const bool on_side = a == c && sides.is_side(a, at[a] + (s ? 1 : -1), layout.cells);
@@ -42,16 +42,53 @@ KOKKOS_INLINE_FUNCTION void fill_row(const WallRows& rows, Index row, int c, con
       y[a] += (s ? 1 : -1) * solid.grid.spacing[a];
       const int wall = nearest_owner(solid, c, q, y);
       rows.owner(row, d) = wall;
-      const Real crossing = wall_crossing(solid, wall, nearest, x, y);
-      distance[s] = crossing > smallest_wall_distance ? crossing : smallest_wall_distance;
+      rows.distance(row, d) = static_cast<float>(wall_crossing(solid, wall, nearest, x, y));
     }
-    const Real total = Kokkos::fmax(distance[0] + distance[1], narrowest_stencil);
-    rows.weight(row, 2 * a) = static_cast<float>(2 / (distance[0] * total));
-    rows.weight(row, 2 * a + 1) = static_cast<float>(2 / (distance[1] * total));
   }
   rows.face(row) = p;
   rows.walls(row) = static_cast<std::uint8_t>(walls);
   rows.superseded(row) = 0;
+}
+
+/// Gradient of the distance at the low face p across axis c.
+KOKKOS_INLINE_FUNCTION Vec3 distance_gradient(const SolidSampler& solid, int c, Index p) {
+  const Field<Real>& sdf = solid.sdf;
+  const Index q = p - sdf.layout().stride(c);
+  Vec3 gradient;
+  for (int a = 0; a < 3; ++a) {
+    const Index step = sdf.layout().stride(a);
+    const Real change =
+        a == c ? sdf[p] - sdf[q] : 0.25 * (sdf[p + step] - sdf[p - step] + sdf[q + step] - sdf[q - step]);
+    gradient[a] = change / solid.grid.spacing[a];
+  }
+  return gradient;
+}
+
+/// Smallest distance to walls, in spacings, that enters the stencil of the point at x, the low face p across
+/// axis c.
+KOKKOS_INLINE_FUNCTION Real least_distance(const SolidSampler& solid, int c, Index p, Vec3 x,
+                                           Real viscosity) {
+  const int body = nearest_owner(solid, c, p, x);
+  if (body < 0) return smallest_wall_distance;
+  const Vec3 gradient = distance_gradient(solid, c, p);
+  const Real steepness = norm(gradient);
+  if (steepness == 0) return smallest_wall_distance;
+  const Real normal_speed = Kokkos::abs(dot(solid.geometry.velocity(body, x), gradient)) / steepness;
+  if (normal_speed == 0) return smallest_wall_distance;
+  const Real3& spacing = solid.grid.spacing;
+  const Real reach = normal_speed * Kokkos::fmin(spacing[0], Kokkos::fmin(spacing[1], spacing[2]));
+  constexpr Real rise = smallest_moving_distance - smallest_wall_distance;
+  return smallest_wall_distance + rise * reach / (reach + cell_reynolds_of_half_rise * viscosity);
+}
+
+/// Weights of a row whose wall distances are at least least.
+KOKKOS_INLINE_FUNCTION void set_weights(const WallRows& rows, Index row, Real least) {
+  for (int a = 0; a < 3; ++a) {
+    Real distance[2];
+    for (int s = 0; s < 2; ++s) distance[s] = Kokkos::fmax(rows.distance(row, 2 * a + s), least);
+    const Real total = Kokkos::fmax(distance[0] + distance[1], narrowest_stencil);
+    for (int s = 0; s < 2; ++s) rows.weight(row, 2 * a + s) = static_cast<float>(2 / (distance[s] * total));
+  }
 }
 
 }  // namespace
@@ -95,14 +132,16 @@ void build_wall_rows(int c, const SolidSampler& solid, const FaceVector<OpenFrac
   chain_rows(layout, rows);
 }
 
-void refresh_wall_velocity(int c, const SolidSampler& solid, const WallRows& rows) {
+void refresh_wall_motion(int c, const SolidSampler& solid, Real viscosity, const WallRows& rows) {
   const SolidSampler sampler = solid;
   const WallRows target = rows;
   const Layout layout = solid.sdf.layout();
   for_each(
-      "flow::refresh_wall_velocity", rows.count, KOKKOS_LAMBDA(Index row) {
-        const Int3 cell = cell_of(layout, target.face(row));
+      "flow::refresh_wall_motion", rows.count, KOKKOS_LAMBDA(Index row) {
+        const Index p = target.face(row);
+        const Int3 cell = cell_of(layout, p);
         const Vec3 x = sampler.grid.face_center(c, cell[0], cell[1], cell[2]);
+        set_weights(target, row, least_distance(sampler, c, p, x, viscosity));
         const NarrowGap gap = narrow_gap(sampler, c, cell[0], cell[1], cell[2]);
         Real sum = 0;
         for (int d = 0; d < WallRows::directions; ++d) {
@@ -111,7 +150,7 @@ void refresh_wall_velocity(int c, const SolidSampler& solid, const WallRows& row
           const int a = d / 2;
           const Real h = sampler.grid.spacing[a];
           Vec3 wall = x;
-          wall[a] += (d % 2 ? 1 : -1) * h * target.wall_distance(row, d);
+          wall[a] += (d % 2 ? 1 : -1) * h * target.distance(row, d);
           sum += target.weight(row, d) * wall_velocity(sampler, gap, body, c, wall) / (h * h);
         }
         target.wall_sum(row) = sum;

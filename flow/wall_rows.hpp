@@ -12,6 +12,14 @@ namespace peclet::flow {
 /// Smallest distance to a wall, in spacings, that enters a stencil: bounds the coefficients.
 inline constexpr Real smallest_wall_distance = 1e-2;
 
+/// The same beside walls that move along their normal, with a velocity U_n of a high cell Reynolds number
+/// R = |U_n| h / nu. Friction slows the point at a distance l down at the rate 2 nu / (l h), and the wall is
+/// there within l / U_n: above R = 2 it arrives first, whatever l. Friction that grows like 1 / l would hand
+/// over what the point still carries in the last step before it is covered, as a jolt; the distance is
+/// therefore at least smallest + (moving - smallest) R / (R + 1/4), and CoveredPoints takes care of the rest.
+inline constexpr Real smallest_moving_distance = 0.125;
+inline constexpr Real cell_reynolds_of_half_rise = 0.25;
+
 /// Between two walls closer than this, in spacings, a stencil keeps this width: the forces that the two
 /// exchange through it stay those of the fluid in the gap.
 inline constexpr Real narrowest_stencil = 1;
@@ -24,28 +32,22 @@ struct WallRows {
   static constexpr int directions = 6;
 
   Index count = 0;
-  Array<Index> face;                                      // linear index of the velocity point
-  Kokkos::View<float* [directions], MemorySpace> weight;  // 2 / (l (l + h)), not divided by spacing^2
-  Kokkos::View<int* [directions], MemorySpace> owner;     // body of each wall; of the nearest body elsewhere
-  Array<std::uint8_t> walls;                              // bit d: there is a wall in direction d
-  Array<Real> wall_sum;            // sum over walls of weight * wall velocity / spacing^2
-  Array<Real> dilation;            // v_c div(v), see advective_leak
-  Array<std::uint8_t> superseded;  // rows of fixed bodies inside a moving region
-  RowChains chains;                // by row of cells
+  Array<Index> face;                                        // linear index of the velocity point
+  Kokkos::View<float* [directions], MemorySpace> distance;  // to the wall, or 1, in spacings
+  Kokkos::View<float* [directions], MemorySpace> weight;    // 2 / (l (l + h)), not divided by spacing^2
+  Kokkos::View<int* [directions], MemorySpace> owner;  // body of each wall; of the nearest body elsewhere
+  Array<std::uint8_t> walls;                           // bit d: there is a wall in direction d
+  Array<Real> wall_sum;                                // sum over walls of weight * wall velocity / spacing^2
+  Array<Real> dilation;                                // v_c div(v), see advective_leak
+  Array<std::uint8_t> superseded;                      // rows of fixed bodies inside a moving region
+  RowChains chains;                                    // by row of cells
 
   KOKKOS_INLINE_FUNCTION bool is_wall(Index row, int d) const { return (walls(row) >> d) & 1; }
-
-  /// Distance to the wall in direction d, in spacings: from w_l = 2 / (l S), w_h = 2 / (h S), S = l + h or 1.
-  KOKKOS_INLINE_FUNCTION Real wall_distance(Index row, int d) const {
-    const Real w = weight(row, d), other = weight(row, d ^ 1);
-    const Real total = 2 * (1 / w + 1 / other);
-    return 2 / (w * (total > narrowest_stencil ? Kokkos::sqrt(total) : narrowest_stencil));
-  }
 
   void reserve(Index capacity);
   Index bytes() const {
     constexpr std::size_t per_row =
-        sizeof(Index) + directions * (sizeof(float) + sizeof(int)) + 2 * sizeof(Real) + sizeof(int) + 2;
+        sizeof(Index) + directions * (2 * sizeof(float) + sizeof(int)) + 2 * sizeof(Real) + sizeof(int) + 2;
     return static_cast<Index>(face.extent(0) * per_row + chains.first.extent(0) * sizeof(int));
   }
 };
@@ -91,7 +93,7 @@ void build_wall_rows(int c, const SolidSampler& solid, const FaceVector<OpenFrac
 /// Chains the rows by row of cells once their faces are known.
 void chain_rows(const Layout& layout, WallRows& rows);
 
-/// Recomputes wall_sum from the present velocities of the bodies.
-void refresh_wall_velocity(int c, const SolidSampler& solid, const WallRows& rows);
+/// Recomputes weight and wall_sum from the present velocities of the bodies. viscosity is the kinematic one.
+void refresh_wall_motion(int c, const SolidSampler& solid, Real viscosity, const WallRows& rows);
 
 }  // namespace peclet::flow

@@ -63,12 +63,14 @@ def towed(
     solid_fraction: float = 0.064,
     reynolds: float | None = None,
     scheme: str = "koren",
+    in_own_frame: bool = False,
 ) -> tuple[np.ndarray, float]:
     """Drag factors K of the steps that cover the distance (in cells), after settle steps; Reynolds number.
 
     A body force f with f V_fluid = F of the step before holds the total momentum of the fluid, so that the
     mean flow settles; K = F / (1 - phi) / (6 pi mu a U), U the mean velocity relative to the spheres with
     zero inside. Without a Reynolds number (speed of the sphere times diameter / nu) there is no advection.
+    In their own frame the spheres stay, and the fluid starts with their speed.
     """
     speed = 0.01
     radius = radius_of(solid_fraction, cells**3)
@@ -79,15 +81,20 @@ def towed(
     if reynolds is not None:
         solver.set_advection_scheme(scheme)
         solver.set_advection(True)
-    solver.set_instance_motion(0, (speed, 0, 0))
+    if in_own_frame:
+        still = np.zeros((cells,) * 3)
+        solver.set_state(still + speed, still, still)
+    else:
+        solver.set_instance_motion(0, (speed, 0, 0))
     force, factors, relative = 0.0, [], 0.0
     for step in range(settle + round(distance / courant)):
-        center[0] += speed * dt
-        solver.set_instance_transform(0, center)
+        if not in_own_frame:
+            center[0] += speed * dt
+            solver.set_instance_transform(0, center)
         solver.set_body_force(force / (cells**3 * (1 - solid_fraction)), 0, 0)
         solver.step()
         force = solver.hydro_force_torque_reaction()[0, 0, 0]
-        relative = solver.get_u().mean() - speed * (1 - solid_fraction)
+        relative = solver.get_u().mean() - (0 if in_own_frame else speed * (1 - solid_fraction))
         if step >= settle:
             factors.append(force / (1 - solid_fraction) / (6 * np.pi * mu * radius * relative))
     return np.array(factors), abs(relative) * 2 * radius / mu

@@ -22,6 +22,7 @@ from examples.validation.comparisons import (
     steady_cylinder,
     torque_rows,
     towards_plane,
+    towed_and_at_rest,
     towed_rows,
     towed_with_inertia,
 )
@@ -80,10 +81,8 @@ CASES = (
     ),
     Case(
         "towed spheres with inertia",
-        small=None,
-        full=lambda curves: (
-            towed_with_inertia(20, 300, 5e-3, 1e-2) + towed_with_inertia(100, 800, 5e-3, 2.5e-2)
-        ),
+        small=lambda: towed_with_inertia(20, 100, 5e-3)[0],
+        full=lambda curves: towed_and_at_rest(20, 300, 5e-3) + towed_and_at_rest(100, 600, 5e-3),
     ),
     Case(
         "sphere in a closed cube",
@@ -140,8 +139,8 @@ CASES = (
     ),
     Case(
         "oscillating cylinder",
-        small=lambda: moving_cylinder(12, 10, 2, 0.1, 0.1),
-        full=lambda curves: moving_cylinder(16, 16, 4, 0.04, 0.07),
+        small=lambda: moving_cylinder(12, 10, 2, 0.13, 0.06),
+        full=lambda curves: moving_cylinder(16, 16, 4, 0.04, 0.04),
     ),
     Case(
         "oscillating cylinder, finer grid",

@@ -55,7 +55,7 @@ void run(const Case& c, Real number, int repetitions, Table& table) {
   const DomainSides sides;
   ImmersedBoundary boundary(grid, sides);
   Bodies bodies;
-  boundary.build(bodies, samples, number);
+  boundary.build(bodies, samples, {number, 1});
   const SweepPlan plan(c.cells, boundary.rows().box, periodic.axis);
 
   MomentumTerms terms;

@@ -9,9 +9,10 @@ struct BoundaryInTest {
   Bodies bodies;
   ImmersedBoundary boundary;
 
-  explicit BoundaryInTest(const std::vector<SphereInTest>& spheres, Real viscous_area = 1e-3)
+  explicit BoundaryInTest(const std::vector<SphereInTest>& spheres,
+                          const WallFriction& friction = {0.1, 1e-2})
       : bodies(scene_of(spheres), grid_in_tests(), true, {}), boundary(grid_in_tests(), {}) {
-    boundary.build(bodies, {}, viscous_area);
+    boundary.build(bodies, {}, friction);
   }
 };
 

@@ -55,7 +55,7 @@ TEST(ImmersedBoundary, AnUpdateGivesWhatANewBuildWould) {
   for (const Vec3 position : {Vec3{2.6, 4.9, 3.3}, Vec3{6.3, 7.0, 0.2}}) {
     const std::vector<OpenFraction> before = open_values(moved.boundary);
     moved.bodies.set_pose(0, position, {});
-    moved.boundary.update(moved.bodies, pressure, 1e-3);
+    moved.boundary.update(moved.bodies, pressure, {0.1, 1e-2});
     const BoundaryInTest fresh({moving({position, 1.2}, {0.1, 0, 0}), {{4.9, 3.1, 1.9}, 1.6}});
     EXPECT_EQ(open_values(moved.boundary), open_values(fresh.boundary));
     EXPECT_NE(open_values(moved.boundary), before);
@@ -71,7 +71,7 @@ TEST(ImmersedBoundary, ChangedBoxesHoldEveryFaceThatChanged) {
   BoundaryInTest moved({moving(crossing_the_edge, {0.1, 0, 0})});
   const std::vector<OpenFraction> before = open_values(moved.boundary);
   moved.bodies.set_pose(0, {1.1, 4.0, 0.8}, {});
-  moved.boundary.update(moved.bodies, Field<Real>("pressure", Layout(grid.cells)), 1e-3);
+  moved.boundary.update(moved.bodies, Field<Real>("pressure", Layout(grid.cells)), {0.1, 1e-2});
   const std::vector<OpenFraction> after = open_values(moved.boundary);
   std::size_t n = 0;
   for (int a = 0; a < 3; ++a)

@@ -56,7 +56,7 @@ TEST(NearCells, FollowABodyPastAFixedOne) {
   const Field<Real> pressure("pressure", Layout(grid.cells));
   for (const Vec3 place : {Vec3{5.1, 3.6, 6.4}, Vec3{1.2, 7.9, 5.2}, Vec3{-0.4, 2.3, 1.1}}) {
     moved.bodies.set_pose(0, place, {});
-    moved.boundary.update(moved.bodies, pressure, 1e-3);
+    moved.boundary.update(moved.bodies, pressure, {0.1, 1e-2});
     expect_one_row_per_face_at_a_wall(moved.boundary);
   }
 }

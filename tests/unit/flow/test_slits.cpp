@@ -56,7 +56,7 @@ TEST(Slits, AreOpenFacesWithASolidCentre) {
 }
 
 TEST(Slits, TheClosedAreasAddUpToTheVolumeOfTheBody) {
-  const BoundaryInTest flow({moving(crossing_the_edge, stream)}, 1e-9);
+  const BoundaryInTest flow({moving(crossing_the_edge, stream)}, {1e-9, 1});
   const Real exact = 4.0 / 3 * std::numbers::pi * std::pow(crossing_the_edge.radius, 3);
   for (int c = 0; c < 3; ++c) {
     Real closed = 0;
@@ -68,11 +68,11 @@ TEST(Slits, TheClosedAreasAddUpToTheVolumeOfTheBody) {
 
 TEST(Slits, FixedBodiesAndCreepingFlowsHaveNone) {
   EXPECT_EQ(number_of_slits(BoundaryInTest({crossing_the_edge})), 0);
-  EXPECT_EQ(number_of_slits(BoundaryInTest({moving(crossing_the_edge, stream)}, 1e3)), 0);
+  EXPECT_EQ(number_of_slits(BoundaryInTest({moving(crossing_the_edge, stream)}, {1e3, 1})), 0);
 }
 
 TEST(Slits, FrictionTakesTheFlowTowardsTheWallVelocity) {
-  const BoundaryInTest flow({moving(crossing_the_edge, stream)}, 0.05);
+  const BoundaryInTest flow({moving(crossing_the_edge, stream)}, {0.05, 1});
   const Slits slits = flow.boundary.slits(1);
   ASSERT_GT(slits.count, 0);
   const Field<Real> velocity("velocity", Layout(grid.cells)), residual("residual", Layout(grid.cells));

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "boundary_in_tests.hpp"
 
 namespace {
@@ -22,8 +24,8 @@ std::vector<Real> wall_radii(const WallRows& rows, int c, Vec3 center) {
         const Int3 cell = cell_of(layout, w.face(row));
         for (int d = 0; d < WallRows::directions; ++d) {
           Vec3 x = box.face_center(c, cell[0], cell[1], cell[2]);
-          x[d / 2] += (d % 2 ? 1 : -1) * box.spacing[d / 2] * w.wall_distance(row, d);
-          const bool counts = w.is_wall(row, d) && w.wall_distance(row, d) > 1.01 * smallest_wall_distance;
+          x[d / 2] += (d % 2 ? 1 : -1) * box.spacing[d / 2] * w.distance(row, d);
+          const bool counts = w.is_wall(row, d) && w.distance(row, d) > 1.01 * smallest_wall_distance;
           radii(row * WallRows::directions + d) = counts ? norm(x - center) : 0;
         }
       });
@@ -52,7 +54,7 @@ std::vector<Real> second_derivatives(const WallRows& rows) {
   for_each(
       "second_derivatives", rows.count, KOKKOS_LAMBDA(Index row) {
         for (int d = 0; d < WallRows::directions; ++d) {
-          const Real step = w.is_wall(row, d) ? w.wall_distance(row, d) : 1;
+          const Real step = Kokkos::fmax(static_cast<Real>(w.distance(row, d)), smallest_wall_distance);
           sums(row) += w.weight(row, d) * step * step;
         }
       });
@@ -83,6 +85,40 @@ TEST(WallRows, AStreamThatMovesWithTheBodyHasNoFriction) {
   const BoundaryInTest moves({moving({{2.6, 5.2, 3.6}, 1.9}, velocity)});
   // weights reach 2 / 0.01^2 at the smallest wall distance
   for (int c = 0; c < 3; ++c) EXPECT_LT(largest_term(moves.boundary.moving_rows(c), velocity[c]), 1e-10);
+}
+
+/// Largest weight of a row, at the smallest distance to a wall.
+Real largest_weight(const WallRows& rows) {
+  const WallRows w = rows;
+  return max_each(
+      "largest_weight", rows.count, KOKKOS_LAMBDA(Index row) {
+        Real largest = 0;
+        for (int d = 0; d < WallRows::directions; ++d)
+          largest = Kokkos::fmax(largest, static_cast<Real>(w.weight(row, d)));
+        return largest;
+      });
+}
+
+Real largest_weight(Vec3 velocity, Vec3 spin, Real viscosity) {
+  const BoundaryInTest flow({moving({{2.6, 5.2, 3.6}, 1.9}, velocity, spin)}, {viscosity, 1e-2});
+  Real largest = 0;
+  for (int c = 0; c < 3; ++c) largest = std::max(largest, largest_weight(flow.boundary.moving_rows(c)));
+  return largest;
+}
+
+TEST(WallRows, AreBoundedMoreWhereAWallArrivesBeforeFrictionActs) {
+  const Real creeping = largest_weight({1e-9, 0, 0}, {}, 1);
+  EXPECT_GT(creeping, 10 / smallest_moving_distance);  // some points are close to the wall
+  Real weight = creeping;
+  for (const Real viscosity : {1.0, 0.1, 0.01}) {
+    const Real smaller = largest_weight({0.5, 0.3, 0.4}, {}, viscosity);
+    EXPECT_LT(smaller, weight);
+    weight = smaller;
+  }
+  // a sphere that spins covers no points
+  EXPECT_GT(largest_weight({}, {0, 0, 5}, 10), 0.5 * creeping);
+  EXPECT_LT(largest_weight({5 * 1.9, 0, 0}, {}, 10), 0.5 * creeping);
+  EXPECT_LE(largest_weight({5, 3, 4}, {}, 1e-6), 2.2 / smallest_moving_distance);
 }
 
 }  // namespace

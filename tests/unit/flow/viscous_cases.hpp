@@ -51,7 +51,7 @@ struct Flow {
               distance(Vec3{i + 0.5, j + 0.5, k + 0.5}) * std::min({spacing[0], spacing[1], spacing[2]});
     fill_mirrored_ghosts(samples, sides);
     Bodies bodies;
-    boundary.build(bodies, samples, 1e-3);
+    boundary.build(bodies, samples, {0.1, 1e-2});
     const Periodicity periodic = sides.periodicity();
     for (int c = 0; c < 3; ++c) {
       rows[c] = velocity_rows(boundary.rows(), sides, n, c);
