@@ -249,9 +249,12 @@ Real sum_each(const std::string& label, Index count, const Body& body) {
   return total;
 }
 
-/// Lists the n < count with keep(n), in order; returns their number. list has room for count entries.
-template <class Keep>
-Index list_where(const std::string& label, Index count, const Array<Index>& list, const Keep& keep) {
+/// Lists what select(place, entry) puts into entry where it returns true, in order, for the places at(n),
+/// n < count; returns the number of entries. list has room for count entries. On the host places.advance
+/// goes from one place to the next; on a device select runs twice.
+template <class T, class Places, class Select>
+Index list_selected(const std::string& label, Index count, const Places& places, const Array<T>& list,
+                    const Select& select) {
   Index total = 0;
   if constexpr (runs_on_host) {
     constexpr Index most_chunks = 64;
@@ -261,29 +264,47 @@ Index list_where(const std::string& label, Index count, const Array<Index>& list
     Index* const size = sizes;
     for_each_task(label, chunks, [=](Index chunk) {
       const Index begin = chunk * count / chunks, end = (chunk + 1) * count / chunks;
+      size[chunk] = 0;
+      if (begin == end) return;
       Index next = begin;
-      for (Index n = begin; n < end; ++n) {
-        list(next) = n;
-        next += keep(n) ? 1 : 0;
-      }
+      auto place = places.at(begin);
+      for (Index n = begin; n < end; ++n, places.advance(place)) next += select(place, list(next)) ? 1 : 0;
       size[chunk] = next - begin;
     });
     for (Index chunk = 0; chunk < chunks; ++chunk) {
       const Index from = chunk * count / chunks;
-      for (Index n = 0; n < sizes[chunk]; ++n) list(total + n) = list(from + n);
+      if (from != total)
+        for (Index n = 0; n < sizes[chunk]; ++n) list(total + n) = list(from + n);
       total += sizes[chunk];
     }
   } else {
     Kokkos::parallel_scan(
         label, Kokkos::RangePolicy<ExecutionSpace, Kokkos::IndexType<Index>>(0, count),
         KOKKOS_LAMBDA(Index n, Index & running, bool is_final) {
-          if (!keep(n)) return;
-          if (is_final) list(running) = n;
+          T entry;
+          if (!select(places.at(n), entry)) return;
+          if (is_final) list(running) = entry;
           ++running;
         },
         total);
   }
   return total;
+}
+
+/// Places that are the numbers from 0.
+struct Numbers {
+  KOKKOS_INLINE_FUNCTION Index at(Index n) const { return n; }
+  KOKKOS_INLINE_FUNCTION void advance(Index& n) const { ++n; }
+};
+
+/// Lists the n < count with keep(n), in order; returns their number. list has room for count entries.
+template <class Keep>
+Index list_where(const std::string& label, Index count, const Array<Index>& list, const Keep& keep) {
+  return list_selected(
+      label, count, Numbers(), list, KOKKOS_LAMBDA(Index n, Index & entry) {
+        entry = n;
+        return keep(n);
+      });
 }
 
 /// Largest of body(n) over 0 <= n < count, at least zero; the same for any number of threads.

@@ -59,17 +59,14 @@ struct BodyGeometry {
     return distance_from(body, sphere_radius(body), x);
   }
 
-  /// The same at n points.
-  template <int n>
-  KOKKOS_INLINE_FUNCTION void distances(int b, const Vec3 (&x)[n], Real (&d)[n]) const {
-    const Body& body = bodies(b);
-    const Real radius = sphere_radius(body);
-    for (int m = 0; m < n; ++m) d[m] = distance_from(body, radius, x[m]);
-  }
-
   /// Radius of a sphere whose nearest image is all that matters, else 0.
   KOKKOS_FORCEINLINE_FUNCTION Real sphere_radius(const Body& body) const {
     return body.wide ? 0.0 : body.pose.scale * program.sphere_radius(body.slot);
+  }
+
+  /// From the centre of body b to x, nearest image.
+  KOKKOS_FORCEINLINE_FUNCTION Vec3 arm(int b, Vec3 x) const {
+    return images.nearest(x - bodies(b).pose.translation);
   }
 
   /// radius: sphere_radius(body).

@@ -9,12 +9,18 @@ struct DenseMatrix {
   KOKKOS_INLINE_FUNCTION Real& operator()(Index i, Index j) const { return values[i * size + j]; }
 };
 
-/// Which cells are connected, and which touch a Fixed side.
+/// Which cells are connected, as one row of bits per cell, and which touch a Fixed side.
 struct Connections {
+  using Word = CoarseSolver::Word;
+  static constexpr int bits = 64;
+
   int size;
-  unsigned char* connected;
+  Word* connected;
   unsigned char* fixed;
-  KOKKOS_INLINE_FUNCTION unsigned char& operator()(Index i, Index j) const { return connected[i * size + j]; }
+  KOKKOS_INLINE_FUNCTION int words() const { return (size + bits - 1) / bits; }
+  KOKKOS_INLINE_FUNCTION Word* row(int i) const { return connected + static_cast<Index>(i) * words(); }
+  KOKKOS_INLINE_FUNCTION bool operator()(int i, int j) const { return row(i)[j / bits] >> (j % bits) & 1; }
+  KOKKOS_INLINE_FUNCTION void connect(int i, int j) const { row(i)[j / bits] |= Word(1) << (j % bits); }
 };
 
 /// Row n of the operator and of the adjacency.
@@ -24,10 +30,9 @@ KOKKOS_INLINE_FUNCTION void write_row(const LevelOperator<Coefficient>& op, cons
   const LevelShape& shape = op.shape;
   const int nx = shape.cells[0], ny = shape.cells[1];
   const Int3 cell{n % nx, n / nx % ny, n / (nx * ny)};
-  for (int m = 0; m < matrix.size; ++m) {
-    matrix(n, m) = 0;
-    connections(n, m) = n == m;
-  }
+  for (int m = 0; m < matrix.size; ++m) matrix(n, m) = 0;
+  for (int word = 0; word < connections.words(); ++word) connections.row(n)[word] = 0;
+  connections.connect(n, n);
   const Real extra = reaction ? reaction[shape.layout(cell[0], cell[1], cell[2])] : 0;
   matrix(n, n) = extra;
   connections.fixed[n] = extra > 0;
@@ -49,7 +54,7 @@ KOKKOS_INLINE_FUNCTION void write_row(const LevelOperator<Coefficient>& op, cons
       const int m = other[0] + nx * (other[1] + ny * other[2]);
       matrix(n, n) += c;
       matrix(n, m) -= c;
-      connections(n, m) = 1;
+      connections.connect(n, m);
     }
 }
 
@@ -57,8 +62,10 @@ KOKKOS_INLINE_FUNCTION void write_row(const LevelOperator<Coefficient>& op, cons
 void close_connections(const Connections& connections) {
   for (int via = 0; via < connections.size; ++via)
     for_each_entry(
-        "flow::connect", connections.size, connections.size, KOKKOS_LAMBDA(int j, int i) {
-          if (connections(i, via) && connections(via, j)) connections(i, j) = 1;
+        "flow::connect", connections.size, 1, KOKKOS_LAMBDA(int i, int) {
+          if (i == via || !connections(i, via)) return;
+          for (int word = 0; word < connections.words(); ++word)
+            connections.row(i)[word] |= connections.row(via)[word];
         });
 }
 
@@ -145,7 +152,7 @@ CoarseSolver::CoarseSolver(const LevelShape& shape) : shape_(shape) {
   const Index n = shape.number_of_cells();
   matrix_ = Array<Real>("coarse_matrix", n * n);
   inverse_ = Array<Real>("coarse_inverse", n * n);
-  connected_ = Array<unsigned char>("coarse_connected", n * n);
+  connected_ = Array<Word>("coarse_connected", n * ((n + Connections::bits - 1) / Connections::bits));
   fixed_ = Array<unsigned char>("coarse_fixed", n);
   empty_ = Array<unsigned char>("coarse_empty", n);
   added_ = Array<Real>("coarse_added", n);
@@ -177,8 +184,8 @@ void CoarseSolver::solve(const Field<float>& rhs, const Field<float>& solution) 
 
 std::size_t CoarseSolver::bytes() const {
   return (matrix_.span() + inverse_.span() + added_.span() + removed_.span()) * sizeof(Real) +
-         (pseudo_inverse_.span() + vector_.span()) * sizeof(float) + connected_.span() + fixed_.span() +
-         empty_.span();
+         (pseudo_inverse_.span() + vector_.span()) * sizeof(float) + connected_.span() * sizeof(Word) +
+         fixed_.span() + empty_.span();
 }
 
 }  // namespace peclet::flow

@@ -9,6 +9,7 @@ namespace peclet::flow {
 class CoarseSolver {
  public:
   static constexpr int largest_size = 128;
+  using Word = std::uint64_t;
 
   CoarseSolver() = default;
   explicit CoarseSolver(const LevelShape& shape);
@@ -22,7 +23,8 @@ class CoarseSolver {
  private:
   LevelShape shape_;
   Array<Real> matrix_, inverse_;
-  Array<unsigned char> connected_, fixed_, empty_;
+  Array<Word> connected_;
+  Array<unsigned char> fixed_, empty_;
   Array<Real> added_, removed_;
   Array<float> pseudo_inverse_, vector_;
 };

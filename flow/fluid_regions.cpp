@@ -8,12 +8,13 @@ namespace {
 using Word = RowMasks::Word;
 constexpr int bits = RowMasks::bits;
 
-/// action(row, first cell of a run in the row)
+/// action(first cell of a run in the row, place of the run)
 template <class Action>
 KOKKOS_INLINE_FUNCTION void for_each_run(const RowMasks& masks, Index row, const Action& action) {
+  int run = 0;
   for (int word = 0; word < masks.words; ++word)
     for (Word starts = masks.starts(row, word); starts != 0; starts &= starts - 1)
-      action(word * bits + Kokkos::countr_zero(starts));
+      action(word * bits + Kokkos::countr_zero(starts), masks.place(row, run++));
 }
 
 KOKKOS_INLINE_FUNCTION void read_word(const RowMasks& masks, const LevelOperator<OpenFraction>& op, Index row,
@@ -83,10 +84,8 @@ KOKKOS_INLINE_FUNCTION bool touches_fixed_side(const LevelOperator<OpenFraction>
 
 void start_runs(const RowMasks& masks, Index rows) {
   for_each(
-      "flow::runs", rows, KOKKOS_LAMBDA(Index row) {
-        const int first = masks.first_cell(row);
-        for_each_run(masks, row, [&](int i) { masks.parent[first + i] = first + i; });
-      });
+      "flow::runs", rows,
+      KOKKOS_LAMBDA(Index row) { for_each_run(masks, row, [&](int, int run) { masks.parent[run] = run; }); });
 }
 
 void link_runs(const RowMasks& masks, Index rows) {
@@ -96,26 +95,23 @@ void link_runs(const RowMasks& masks, Index rows) {
 void flatten_trees(const RowMasks& masks, Index rows) {
   for_each(
       "flow::flatten", rows, KOKKOS_LAMBDA(Index row) {
-        const int first = masks.first_cell(row);
-        for_each_run(masks, row, [&](int i) { masks.parent[first + i] = masks.root_of(first + i); });
+        for_each_run(masks, row, [&](int, int run) { masks.parent[run] = masks.root_of(run); });
       });
 }
 
-/// Roots become minus region minus one, numbered in the order of the cells; returns their number.
+/// Roots become minus region minus one, numbered in the order of the rows; returns their number.
 Index number_regions(const RowMasks& masks, Index rows, const Array<Index>& offsets) {
   const Index number = exclusive_sum(
       "flow::count", rows, offsets, KOKKOS_LAMBDA(Index row) {
-        const int first = masks.first_cell(row);
         Index roots = 0;
-        for_each_run(masks, row, [&](int i) { roots += masks.parent[first + i] == first + i; });
+        for_each_run(masks, row, [&](int, int run) { roots += masks.parent[run] == run; });
         return roots;
       });
   for_each(
       "flow::number", rows, KOKKOS_LAMBDA(Index row) {
-        const int first = masks.first_cell(row);
         int region = static_cast<int>(offsets(row));
-        for_each_run(masks, row, [&](int i) {
-          if (masks.parent[first + i] == first + i) masks.parent[first + i] = -(region++) - 1;
+        for_each_run(masks, row, [&](int, int run) {
+          if (masks.parent[run] == run) masks.parent[run] = -(region++) - 1;
         });
       });
   return number;
@@ -124,9 +120,8 @@ Index number_regions(const RowMasks& masks, Index rows, const Array<Index>& offs
 void count_cells(const RowMasks& masks, Index rows, const Array<Index>& cells) {
   for_each(
       "flow::region_size", rows, KOKKOS_LAMBDA(Index row) {
-        const int first = masks.first_cell(row);
-        for_each_run(masks, row, [&](int i) {
-          Kokkos::atomic_add(&cells(masks.region_of(first + i)), Index(masks.run_end(row, i) - i));
+        for_each_run(masks, row, [&](int i, int run) {
+          Kokkos::atomic_add(&cells(masks.region_of(run)), Index(masks.run_end(row, i) - i));
         });
       });
 }
@@ -153,11 +148,11 @@ void sum_over_regions(const RowMasks& masks, Index rows, const Field<Real>& rhs,
         const int ny = masks.shape.cells[1];
         const Real* const values =
             &rhs[rhs.layout()(0, static_cast<int>(row % ny), static_cast<int>(row / ny))];
-        for_each_run(masks, row, [&](int i) {
+        for_each_run(masks, row, [&](int i, int run) {
           const int end = masks.run_end(row, i);
           Real sum = 0;
           for (int m = i; m < end; ++m) sum += values[m];
-          Kokkos::atomic_add(&sums(masks.region_of(masks.first_cell(row) + i)), sum);
+          Kokkos::atomic_add(&sums(masks.region_of(run)), sum);
         });
       });
 }
@@ -167,9 +162,9 @@ void subtract_means(const RowMasks& masks, Index rows, const Array<Real>& means,
       "flow::subtract", rows, KOKKOS_LAMBDA(Index row) {
         const int ny = masks.shape.cells[1];
         Real* const values = &rhs[rhs.layout()(0, static_cast<int>(row % ny), static_cast<int>(row / ny))];
-        for_each_run(masks, row, [&](int i) {
+        for_each_run(masks, row, [&](int i, int run) {
           const int end = masks.run_end(row, i);
-          const Real mean = means(masks.region_of(masks.first_cell(row) + i));
+          const Real mean = means(masks.region_of(run));
           for (int m = i; m < end; ++m) values[m] -= mean;
         });
       });

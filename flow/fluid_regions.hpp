@@ -2,7 +2,7 @@
 // Connected regions of fluid: cells that can be reached from each other through open faces.
 //
 // The faces of a row of cells are kept as bit masks. A run of linked cells is the unit of the search; runs
-// are merged into trees whose root is the smallest cell index, whatever the order of the work
+// are merged into trees whose root has the smallest place, whatever the order of the work
 // [HeChaoSuzuki2008].
 #include <cstdint>
 #include <vector>
@@ -21,21 +21,28 @@ struct RowMasks {
   LevelShape shape;
   int words;  ///< per row
   Word *x, *y, *z, *open;
-  int* parent;
+  int* parent;  ///< by places of runs
+
+  KOKKOS_INLINE_FUNCTION Index number_of_rows() const {
+    return static_cast<Index>(shape.cells[1]) * shape.cells[2];
+  }
+  /// Place of a run: those that are first in their rows come first, because most rows have only one.
+  KOKKOS_INLINE_FUNCTION int place(Index row, int run) const {
+    return static_cast<int>(run * number_of_rows() + row);
+  }
 
   KOKKOS_INLINE_FUNCTION Index row(int j, int k) const { return j + static_cast<Index>(k) * shape.cells[1]; }
-  KOKKOS_INLINE_FUNCTION int first_cell(Index row) const { return static_cast<int>(row * shape.cells[0]); }
   /// Cells that begin a run.
   KOKKOS_INLINE_FUNCTION Word starts(Index row, int word) const {
     const Word linked_inside = word == 0 ? x[row * words] & ~Word(1) : x[row * words + word];
     return open[row * words + word] & ~linked_inside;
   }
-  /// Index of the cell that begins the run of cell i.
+  /// Place of the run of cell i.
   KOKKOS_INLINE_FUNCTION int run_of(Index row, int i) const {
     int word = i / bits;
-    Word candidates = starts(row, word) & (~Word(0) >> (bits - 1 - i % bits));
-    while (candidates == 0) candidates = starts(row, --word);
-    return first_cell(row) + word * bits + bits - 1 - Kokkos::countl_zero(candidates);
+    int run = Kokkos::popcount(starts(row, word) & (~Word(0) >> (bits - 1 - i % bits))) - 1;
+    while (word > 0) run += Kokkos::popcount(starts(row, --word));
+    return place(row, run);
   }
   /// End of the run that begins at cell i.
   KOKKOS_INLINE_FUNCTION int run_end(Index row, int i) const {
@@ -49,11 +56,11 @@ struct RowMasks {
     const int end = word * bits + Kokkos::countr_zero(ends);
     return end < shape.cells[0] ? end : shape.cells[0];
   }
-  KOKKOS_INLINE_FUNCTION int root_of(int cell) const {
-    while (parent[cell] != cell) cell = parent[cell];
-    return cell;
+  KOKKOS_INLINE_FUNCTION int root_of(int run) const {
+    while (parent[run] != run) run = parent[run];
+    return run;
   }
-  /// The root with the larger index is hung below the other one.
+  /// The root with the larger place is hung below the other one.
   KOKKOS_INLINE_FUNCTION void unite(int a, int b) const {
     for (;;) {
       a = root_of(a);
@@ -63,10 +70,10 @@ struct RowMasks {
       if (Kokkos::atomic_compare_exchange(&parent[high], high, low) == high) return;
     }
   }
-  /// Region of the run that begins at a cell, once the regions are numbered.
-  KOKKOS_INLINE_FUNCTION int region_of(int cell) const {
-    while (parent[cell] >= 0) cell = parent[cell];
-    return -parent[cell] - 1;
+  /// Region of a run, once the regions are numbered.
+  KOKKOS_INLINE_FUNCTION int region_of(int run) const {
+    while (parent[run] >= 0) run = parent[run];
+    return -parent[run] - 1;
   }
 };
 

@@ -25,7 +25,7 @@ void sample_body(const SolidSampler& solid, const RegionList& regions) {
   const SolidSampler target = solid;
   for_each(
       "flow::sample_body", regions.number_of_cells(), KOKKOS_LAMBDA(Index n) {
-        const RegionCell cell = region.cell(n);
+        const RegionCell cell = region.at(n);
         const int body = region.body(cell.region);
         const Real d = target.geometry.distance(body, target.grid.cell_center(cell.i, cell.j, cell.k));
         if (d < target.sdf(cell.i, cell.j, cell.k)) {
@@ -35,60 +35,71 @@ void sample_body(const SolidSampler& solid, const RegionList& regions) {
       });
 }
 
-/// Nearest of the moving bodies whose boxes hold a cell.
-struct NearestBody {
-  Real distance = far_away;
+/// The two nearest of the moving bodies whose boxes hold a cell.
+struct NearestBodies {
+  Real distance = far_away, second = far_away;
   int body = no_owner;
 };
 
-KOKKOS_INLINE_FUNCTION NearestBody nearest_body(const SolidSampler& solid, const RegionView& region,
-                                                const RegionCell& cell) {
+KOKKOS_INLINE_FUNCTION NearestBodies nearest_bodies(const SolidSampler& solid, const RegionView& region,
+                                                    const RegionCell& cell) {
   const Vec3 x = solid.grid.cell_center(cell.i, cell.j, cell.k);
-  NearestBody nearest;
+  NearestBodies nearest;
   for (int m = region.first_neighbor(cell.region); m < region.first_neighbor(cell.region + 1); ++m) {
     const int other = region.neighbors(m);
     if (other != cell.region && !region.contains(other, cell.i, cell.j, cell.k)) continue;
     const Real d = solid.geometry.distance(region.body(other), x);
-    if (d < nearest.distance) nearest = {d, region.body(other)};
+    if (d < nearest.distance)
+      nearest = {d, nearest.distance, region.body(other)};
+    else if (d < nearest.second)
+      nearest.second = d;
   }
   return nearest;
 }
 
-/// Lists the cells inside moving bodies and in the band around them, and samples distance and owner there:
-/// fixed solid or moving body.
-void sample_band(const SolidSampler& solid, const Field<Real>& fixed_sdf, const Field<int>& fixed_owner,
-                 const RegionList& regions, const Array<Index>& scratch, CellList& band) {
+/// What the fixed solid alone leaves.
+struct FixedGeometry {
+  Field<Real> sdf;
+  Field<int> owner;
+  FaceVector<OpenFraction> open;
+  bool is_empty;  // no fixed solid
+};
+
+/// Lists the cells inside moving bodies and in the band around them, marks them, and samples distance and
+/// owner there: fixed solid or moving body. Around a narrow gap, less than a spacing wide, the distances of a
+/// cell to both sides add up to two spacings at most.
+void sample_band(const SolidSampler& solid, const FixedGeometry& fixed, const RegionList& regions,
+                 int band_mark, CellList& band) {
   const RegionView region = regions.view();
   const SolidSampler target = solid;
+  const FixedGeometry source = fixed;
   const Real3& h = solid.grid.spacing;
   const Real width = band_width * std::max({h[0], h[1], h[2]});
-  band.count = list_where(
-      "flow::sample_band", regions.number_of_cells(), scratch, KOKKOS_LAMBDA(Index n) {
-        const RegionCell cell = region.cell(n);
+  band.count = list_selected(
+      "flow::sample_band", regions.number_of_cells(), region, band.listed,
+      KOKKOS_LAMBDA(const RegionCell& cell, Int3& listed) {
         if (!cell.unique) return false;
-        const NearestBody moving = nearest_body(target, region, cell);
+        const NearestBodies moving = nearest_bodies(target, region, cell);
         if (moving.distance > width) return false;
         const Index p = target.sdf.layout()(cell.i, cell.j, cell.k);
-        const bool is_nearest = moving.distance < fixed_sdf[p];
-        target.sdf[p] = is_nearest ? moving.distance : fixed_sdf[p];
-        target.owner[p] = is_nearest ? moving.body : fixed_owner[p];
+        const Real wall = source.is_empty ? far_away : source.sdf[p];
+        const bool is_nearest = moving.distance < wall;
+        target.sdf[p] = is_nearest ? moving.distance : wall;
+        target.owner[p] = is_nearest ? moving.body : source.owner[p];
+        const bool is_between = moving.distance + Kokkos::min(moving.second, wall) <= width;
+        target.marks[p] = (target.marks[p] & cell_mark::touched_by_fixed) | band_mark |
+                          (is_between ? cell_mark::between_bodies : 0);
+        listed = Int3{cell.i, cell.j, cell.k};
         return true;
-      });
-  band.reserve(band.count);
-  const CellList cells = band;
-  for_each(
-      "flow::list_band", band.count, KOKKOS_LAMBDA(Index n) {
-        const RegionCell cell = region.cell(scratch(n));
-        cells.listed(n) = Int3{cell.i, cell.j, cell.k};
       });
 }
 
-void mark_superseded(const Field<int>& marks, const WallRows& rows) {
+void mark_superseded(const Field<int>& marks, int band_mark, const WallRows& rows) {
   const WallRows target = rows;
   const Field<int> mark = marks;
   for_each(
       "flow::mark_superseded", rows.count,
-      KOKKOS_LAMBDA(Index n) { target.superseded(n) = mark[target.face(n)] & cell_mark::in_band; });
+      KOKKOS_LAMBDA(Index n) { target.superseded(n) = (mark[target.face(n)] & band_mark) != 0; });
 }
 
 /// Pressure of closed cells beside open ones := mean over the open neighbours.
@@ -104,6 +115,8 @@ void extrapolate_pressure(const FaceVector<OpenFraction>& open, const DomainSide
         const Int3 at = candidates.cell(m);
         const Layout& layout = p.layout();
         const Index n = layout(at[0], at[1], at[2]);
+        for (int a = 0; a < 3; ++a)
+          if (!candidates.has(m, cell_part::closed, a) && !box.is_side(a, at[a], cells)) return;
         if (is_open_cell(fraction, n)) return;
         Real sum = 0;
         int count = 0;
@@ -152,37 +165,35 @@ Real count_covered_points(int c, const Field<OpenFraction>& open, const Field<Op
   const Field<OpenFraction> now = open, before = fixed;
   const CellList candidates = near;
   const Layout layout = open.layout();
-  const bool has_points_on_side = sides.side[c][1].kind == SideKind::Outflow;
+  const bool is_outflow_low = sides.side[c][0].kind == SideKind::Outflow;
+  const bool is_outflow_high = sides.side[c][1].kind == SideKind::Outflow;
   return sum_each(
       "flow::count_covered_points", near.count, KOKKOS_LAMBDA(Index n) {
+        int covered = candidates.has(n, cell_part::closed | cell_part::slit, c) -
+                      candidates.has(n, cell_part::fixed_wall, c);
+        if (!is_outflow_low && !is_outflow_high) return static_cast<Real>(covered);
         const Int3 cell = candidates.cell(n);
         const Index p = layout(cell[0], cell[1], cell[2]), next = p + layout.stride(c);
-        int covered = is_fluid(before[p]) - is_fluid(now[p]);
-        if (has_points_on_side && cell[c] + 1 == layout.cells[c])
+        if (is_outflow_low && cell[c] == 0) covered += is_fluid(before[p]) - is_fluid(now[p]);
+        if (is_outflow_high && cell[c] + 1 == layout.cells[c])
           covered += is_fluid(before[next]) - is_fluid(now[next]);
         return static_cast<Real>(covered);
       });
 }
 
-/// What the fixed solid alone leaves.
-struct FixedGeometry {
-  Field<Real> sdf;
-  Field<int> owner;
-  FaceVector<OpenFraction> open;
-};
-
-/// The band as the fixed solid alone left it.
+/// The cells that have left the band as the fixed solid alone left them.
 void restore_fixed(const SolidSampler& solid, const FixedGeometry& fixed,
-                   const FaceVector<OpenFraction>& open, const Field<int>& marks, const CellList& band) {
-  const CellList cells = band;
+                   const FaceVector<OpenFraction>& open, int band_mark, const CellList& former_band) {
+  const CellList cells = former_band;
   const SolidSampler target = solid;
   const FixedGeometry source = fixed;
   const FaceVector<OpenFraction> fraction = open;
-  const Field<int> mark = marks;
+  const Field<int> mark = solid.marks;
   for_each(
-      "flow::restore_fixed", band.count, KOKKOS_LAMBDA(Index n) {
+      "flow::restore_fixed", former_band.count, KOKKOS_LAMBDA(Index n) {
         const Int3 cell = cells.cell(n);
         const Index p = target.sdf.layout()(cell[0], cell[1], cell[2]);
+        if (mark[p] & band_mark) return;
         target.sdf[p] = source.sdf[p];
         target.owner[p] = source.owner[p];
         for (int a = 0; a < 3; ++a) fraction[a][p] = source.open[a][p];
@@ -204,6 +215,7 @@ ImmersedBoundary::ImmersedBoundary(const Grid& grid, const DomainSides& sides)
   solid_.sdf = Field<Real>("flow::sdf", layout);
   solid_.owner = Field<int>("flow::owner", layout);
   marks_ = Field<int>("flow::cell_marks", layout);
+  solid_.marks = marks_;
 }
 
 void ImmersedBoundary::build(Bodies& bodies, const Field<Real>& samples, const WallFriction& friction) {
@@ -212,7 +224,7 @@ void ImmersedBoundary::build(Bodies& bodies, const Field<Real>& samples, const W
   sample_fixed(bodies);
   regions_.clear();
   surfaces_.clear();
-  band_.count = near_.count = 0;
+  band_.count = former_band_.count = near_.count = 0;
   bool any_dynamic = false;
   for (int b = 0; b < bodies.count(); ++b) any_dynamic = any_dynamic || bodies[b].dynamic;
   if (any_dynamic) {
@@ -238,8 +250,10 @@ void ImmersedBoundary::sample_fixed(Bodies& bodies) {
     solid_.sdf.fill(far_away);
     solid_.owner.fill(no_owner);
   }
+  fixed_is_empty_ = !solid_.samples.is_allocated();
   for (int b = 0; b < bodies.count(); ++b) {
     if (bodies[b].dynamic) continue;
+    fixed_is_empty_ = false;
     RegionList region(grid_.cells);
     const Box box = bodies.region(b, region_margin);
     if (box.size() > 0) region.assign({box}, {b});
@@ -251,9 +265,11 @@ void ImmersedBoundary::sample_fixed(Bodies& bodies) {
   fill_open_ghosts(open_, solid_.sdf, sides_);
   rows_ = open_row_ranges(open_, grid_.cells);
   const CellList whole = CellList::of_grid(grid_.cells);
-  const Array<Index> scratch("flow::whole_grid_scratch", static_cast<std::size_t>(whole.count));
   CellList near;
-  find_near_cells(marks_, sides_, whole, scratch, near);
+  near.listed = Array<Int3>("flow::fixed_cells", static_cast<std::size_t>(whole.count));
+  find_near_cells(marks_, sides_, whole, near);
+  sort_near_cells(open_, open_, solid_.sdf, marks_, sides_, near);
+  const Array<Index> scratch("flow::fixed_scratch", static_cast<std::size_t>(near.count));
   for (int c = 0; c < 3; ++c) {
     build_wall_rows(c, solid_, open_, sides_, near, scratch, fixed_rows_[c]);
     refresh_wall_motion(c, solid_, friction_.viscosity, fixed_rows_[c]);
@@ -278,7 +294,6 @@ void ImmersedBoundary::update(Bodies& bodies, const Field<Real>& pressure, const
   regions_.assign(boxes, owners);
   changed_ = cut_inside(joined(surfaces_, surfaces), grid_.cells);
   surfaces_ = surfaces;
-  restore_fixed(solid_, {fixed_sdf_, fixed_owner_, fixed_open_}, open_, marks_, band_);
   solid_.geometry = bodies.geometry();
   if (had_regions || !regions_.empty()) sample_moving();
   refresh_velocity(bodies);
@@ -293,27 +308,33 @@ bool ImmersedBoundary::reaches_sides() const {
 }
 
 void ImmersedBoundary::sample_moving() {
-  const auto total = static_cast<std::size_t>(regions_.number_of_cells());
-  if (scratch_.extent(0) < total) scratch_ = Array<Index>("flow::region_scratch", total + total / 4);
   const bool reaches = reaches_sides(), has_ghosts = reaches || reached_sides_;
   reached_sides_ = reaches;
-  sample_band(solid_, fixed_sdf_, fixed_owner_, regions_, scratch_, band_);
+  const FixedGeometry fixed{fixed_sdf_, fixed_owner_, fixed_open_, fixed_is_empty_};
+  for (CellList* list : {&band_, &former_band_}) list->reserve(regions_.number_of_cells());
+  std::swap(band_, former_band_);
+  band_mark_ ^= cell_mark::in_even_band | cell_mark::in_odd_band;
+  sample_band(solid_, fixed, regions_, band_mark_, band_);
+  restore_fixed(solid_, fixed, open_, band_mark_, former_band_);
   if (has_ghosts) {
     fill_mirrored_ghosts(solid_.sdf, sides_, 1);
     fill_mirrored_ghosts(solid_.owner, sides_, 1);
   }
   open_moving_faces(FaceOpener(solid_, friction_.area()), band_, open_, marks_);
   if (has_ghosts) fill_open_ghosts(open_, solid_.sdf, sides_);
-  find_near_cells(marks_, sides_, band_, scratch_, near_);
+  find_near_cells(marks_, sides_, band_, near_);
+  sort_near_cells(open_, fixed_open_, solid_.sdf, marks_, sides_, near_);
   number_near_cells(near_, marks_);
+  const auto total = static_cast<std::size_t>(near_.count);
+  if (scratch_.extent(0) < total) scratch_ = Array<Index>("flow::near_scratch", total + total / 4);
   for (int c = 0; c < 3; ++c) {
-    mark_superseded(marks_, fixed_rows_[c]);
+    mark_superseded(marks_, band_mark_, fixed_rows_[c]);
     build_wall_rows(c, solid_, open_, sides_, near_, scratch_, moving_rows_[c]);
     std::swap(former_slits_[c], slits_[c]);
     build_slits(c, solid_, open_, friction_.area(), near_, scratch_, slits_[c]);
-    build_body_faces(c, solid_, open_, sides_, near_, scratch_, body_faces_[c]);
+    build_body_faces(c, solid_, near_, scratch_, body_faces_[c]);
   }
-  build_cut_cells(open_, sides_, near_, scratch_, cut_cells_);
+  build_cut_cells(open_.x.layout(), near_, scratch_, cut_cells_);
 }
 
 Real ImmersedBoundary::covered_points(int c) const {

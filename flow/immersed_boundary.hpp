@@ -62,7 +62,9 @@ class ImmersedBoundary {
   Field<int> marks_;
   RowRanges rows_;
   RegionList regions_;
-  CellList band_, near_;                 // near_ is part of band_
+  CellList band_, former_band_, near_;  // near_ is part of band_
+  int band_mark_ = cell_mark::in_even_band;
+  bool fixed_is_empty_ = true;
   std::vector<Box> surfaces_, changed_;  // surfaces_: one box per region
   bool reached_sides_ = false;
   Array<Index> scratch_;

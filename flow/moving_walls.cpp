@@ -28,16 +28,6 @@ void CutCells::reserve_faces(Index near_cells) {
 
 namespace {
 
-KOKKOS_INLINE_FUNCTION bool is_cut(const FaceVector<OpenFraction>& open, Index n) {
-  bool any_open = false, any_closed = false;
-  for (int a = 0; a < 3; ++a) {
-    const OpenFraction low = open[a][n], high = open[a][n + open.x.layout().stride(a)];
-    any_open = any_open || low > 0 || high > 0;
-    any_closed = any_closed || low < fully_open || high < fully_open;
-  }
-  return any_open && any_closed;
-}
-
 /// What the wall adds to o u on the low face of cell (i, j, k) along axis, per face area: the integral of the
 /// wall velocity over the whole face less o times its value in the middle of the open part.
 KOKKOS_INLINE_FUNCTION Real swept_flux(const SolidSampler& solid, const FaceVector<OpenFraction>& open,
@@ -61,21 +51,16 @@ KOKKOS_INLINE_FUNCTION Real swept_flux(const SolidSampler& solid, const FaceVect
 
 }  // namespace
 
-void build_body_faces(int c, const SolidSampler& solid, const FaceVector<OpenFraction>& open,
-                      const DomainSides& sides, const CellList& near, const Array<Index>& scratch,
+void build_body_faces(int c, const SolidSampler& solid, const CellList& near, const Array<Index>& scratch,
                       BodyFaces& faces) {
-  const DomainSides box = sides;
   const CellList candidates = near;
-  const Field<OpenFraction> fraction = open[c];
-  const Layout layout = fraction.layout();
   faces.count = list_where(
-      "flow::list_body_faces", near.count, scratch, KOKKOS_LAMBDA(Index n) {
-        const Int3 cell = candidates.cell(n);
-        return fraction(cell[0], cell[1], cell[2]) == 0 && !box.is_side(c, cell[c], layout.cells);
-      });
+      "flow::list_body_faces", near.count, scratch,
+      KOKKOS_LAMBDA(Index n) { return candidates.has(n, cell_part::closed, c); });
   faces.reserve(faces.count);
   const BodyFaces target = faces;
   const SolidSampler sampler = solid;
+  const Layout layout = solid.sdf.layout();
   for_each(
       "flow::build_body_faces", faces.count, KOKKOS_LAMBDA(Index n) {
         const Int3 cell = candidates.cell(scratch(n));
@@ -86,32 +71,23 @@ void build_body_faces(int c, const SolidSampler& solid, const FaceVector<OpenFra
       });
 }
 
-void build_cut_cells(const FaceVector<OpenFraction>& open, const DomainSides& sides, const CellList& near,
-                     const Array<Index>& scratch, CutCells& cells) {
+void build_cut_cells(const Layout& layout, const CellList& near, const Array<Index>& scratch,
+                     CutCells& cells) {
   const CellList candidates = near;
-  const FaceVector<OpenFraction> fraction = open;
-  const DomainSides box = sides;
-  const Layout layout = open.x.layout();
   cells.reserve_faces(near.count);
   cells.faces = list_where(
-      "flow::list_swept_faces", 3 * near.count, cells.face, KOKKOS_LAMBDA(Index n) {
-        const Int3 cell = candidates.cell(n / 3);
-        const int a = static_cast<int>(n % 3);
-        const Index p = layout(cell[0], cell[1], cell[2]);
-        return fraction[a][p] < fully_open && !box.is_side(a, cell[a], layout.cells) &&
-               (is_cut(fraction, p) || is_cut(fraction, p - layout.stride(a)));
-      });
+      "flow::list_swept_faces", 3 * near.count, cells.face,
+      KOKKOS_LAMBDA(Index n) { return candidates.has(n / 3, cell_part::swept, static_cast<int>(n % 3)); });
   cells.count = list_where(
-      "flow::list_cut_cells", near.count, scratch, KOKKOS_LAMBDA(Index n) {
-        const Int3 cell = candidates.cell(n);
-        return is_cut(fraction, layout(cell[0], cell[1], cell[2]));
-      });
+      "flow::list_cut_cells", near.count, scratch,
+      KOKKOS_LAMBDA(Index n) { return candidates.has(n, cell_part::cut_cell); });
   cells.reserve(cells.count);
   const CutCells target = cells;
+  const Layout cell_layout = layout;
   for_each(
       "flow::build_cut_cells", cells.count, KOKKOS_LAMBDA(Index n) {
         const Int3 cell = candidates.cell(scratch(n));
-        target.cell(n) = layout(cell[0], cell[1], cell[2]);
+        target.cell(n) = cell_layout(cell[0], cell[1], cell[2]);
       });
 }
 

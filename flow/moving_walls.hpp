@@ -35,11 +35,10 @@ struct CutCells {
   void reserve_faces(Index near_cells);
 };
 
-void build_body_faces(int c, const SolidSampler& solid, const FaceVector<OpenFraction>& open,
-                      const DomainSides& sides, const CellList& near, const Array<Index>& scratch,
+void build_body_faces(int c, const SolidSampler& solid, const CellList& near, const Array<Index>& scratch,
                       BodyFaces& faces);
-void build_cut_cells(const FaceVector<OpenFraction>& open, const DomainSides& sides, const CellList& near,
-                     const Array<Index>& scratch, CutCells& cells);
+void build_cut_cells(const Layout& layout, const CellList& near, const Array<Index>& scratch,
+                     CutCells& cells);
 
 /// Recompute velocities and fluxes from the present motion of the bodies.
 void refresh_body_faces(int c, const SolidSampler& solid, const BodyFaces& faces);

@@ -35,10 +35,16 @@ KOKKOS_INLINE_FUNCTION OpenFraction open_fraction_at(const FaceOpener& opener, i
 /// Opens the low faces of cell (i, j, k); returns whether a wall touches them or the cell is solid.
 KOKKOS_INLINE_FUNCTION bool open_cell_faces(const FaceOpener& opener, const FaceVector<OpenFraction>& open,
                                             int i, int j, int k) {
-  bool touched = opener.solid.sdf(i, j, k) < 0;
+  const Index p = opener.solid.sdf.layout()(i, j, k);
+  const Real distance = opener.solid.sdf[p];
+  if (distance > opener.half_diagonal) {
+    for (int a = 0; a < 3; ++a) open[a][p] = fully_open;
+    return false;
+  }
+  bool touched = distance < 0;
   for (int a = 0; a < 3; ++a) {
     const OpenFraction fraction = open_fraction_at(opener, a, i, j, k);
-    open[a](i, j, k) = fraction;
+    open[a][p] = fraction;
     touched = touched || fraction < fully_open;
   }
   return touched;
@@ -74,8 +80,7 @@ void open_moving_faces(const FaceOpener& opener, const CellList& band, const Fac
         const Int3 cell = cells.cell(n);
         const bool touched = open_cell_faces(source, target, cell[0], cell[1], cell[2]);
         const Index p = mark.layout()(cell[0], cell[1], cell[2]);
-        mark[p] =
-            (mark[p] & cell_mark::touched_by_fixed) | cell_mark::in_band | (touched ? cell_mark::touched : 0);
+        if (touched) mark[p] |= cell_mark::touched;
       });
 }
 

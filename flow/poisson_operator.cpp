@@ -14,18 +14,23 @@ KOKKOS_INLINE_FUNCTION float coarse_coefficient(const LevelOperator<Coefficient>
                                                 const LevelShape& coarse, const Merging& merging, int axis,
                                                 const Int3& face) {
   if (coarse.is_collapsed(axis)) return 0;
-  Int3 low, high;
+  const Layout& layout = fine.shape.layout;
+  Int3 low;
+  Index step[3];  // to the second fine face along each edge, if there is one
   for (int a = 0; a < 3; ++a) {
     const int n = fine.shape.cells[a];
     const int first = merging.first_child(a, face[a]), end = merging.end_of_children(a, face[a]);
     low[a] = first < n ? first : n;
-    high[a] = a == axis ? low[a] + 1 : (end < n ? end : n);
+    step[a] = (end < n ? end : n) - low[a] > 1 ? layout.stride(a) : 0;
   }
-  Real sum = 0;
-  for (int k = low[2]; k < high[2]; ++k)
-    for (int j = low[1]; j < high[1]; ++j)
-      for (int i = low[0]; i < high[0]; ++i) sum += fine.face(axis, i, j, k);
-  return static_cast<float>(sum * fine.shape.twice_distance(axis, low[axis]) /
+  const int b = (axis + 1) % 3, c = (axis + 2) % 3;
+  const Coefficient* const values =
+      (axis == 0 ? fine.x : (axis == 1 ? fine.y : fine.z)) + layout(low[0], low[1], low[2]);
+  Real sum = static_cast<Real>(values[0]);
+  if (step[b]) sum += static_cast<Real>(values[step[b]]);
+  if (step[c]) sum += static_cast<Real>(values[step[c]]);
+  if (step[b] && step[c]) sum += static_cast<Real>(values[step[b] + step[c]]);
+  return static_cast<float>(sum * fine.weight[axis] * fine.shape.twice_distance(axis, low[axis]) /
                             coarse.twice_distance(axis, face[axis]));
 }
 

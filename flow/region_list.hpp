@@ -10,11 +10,12 @@ namespace peclet::flow {
 /// One visited cell: indices inside the domain.
 struct RegionCell {
   int i, j, k;
-  int region;   // which box
-  bool unique;  // false where an earlier box visits the same cell
+  int region;    // which box
+  bool unique;   // false where an earlier box visits the same cell
+  int place[3];  // the cell in the box, unwrapped
 };
 
-/// Device side of RegionList.
+/// Device side of RegionList. Its places are the cells of the boxes, one box after the other.
 struct RegionView {
   Array<Box> boxes;           // unwrapped: low in [0, n), high may exceed n
   Array<Index> first_cell;    // per box, plus the total
@@ -37,19 +38,36 @@ struct RegionView {
     return true;
   }
 
-  /// Cell n of the flattened list.
-  KOKKOS_INLINE_FUNCTION RegionCell cell(Index n) const {
+  KOKKOS_INLINE_FUNCTION RegionCell at(Index n) const {
     const int own = box_of_entry(first_cell, count, n);
     const Box& box = boxes(own);
     const int place = static_cast<int>(n - first_cell(own));
     const int nx = box.extent(0), ny = box.extent(1), row = place / nx;
-    RegionCell cell;
-    cell.i = wrap(box.low[0] + place - row * nx, cells[0]);
-    cell.j = wrap(box.low[1] + row % ny, cells[1]);
-    cell.k = wrap(box.low[2] + row / ny, cells[2]);
-    cell.region = own;
-    cell.unique = true;
-    for (int m = first_neighbor(own); m < first_neighbor(own + 1) && neighbors(m) < own; ++m)
+    return cell_of(own, box.low[0] + place - row * nx, box.low[1] + row % ny, box.low[2] + row / ny);
+  }
+  KOKKOS_INLINE_FUNCTION void advance(RegionCell& cell) const {
+    const Box& box = boxes(cell.region);
+    int region = cell.region, x = cell.place[0] + 1, y = cell.place[1], z = cell.place[2];
+    if (x == box.high[0]) {
+      x = box.low[0];
+      if (++y == box.high[1]) {
+        y = box.low[1];
+        ++z;
+      }
+      if (z == box.high[2] && region + 1 < count) {
+        const Box& next = boxes(++region);
+        x = next.low[0];
+        y = next.low[1];
+        z = next.low[2];
+      }
+    }
+    cell = cell_of(region, x, y, z);
+  }
+
+ private:
+  KOKKOS_INLINE_FUNCTION RegionCell cell_of(int region, int x, int y, int z) const {
+    RegionCell cell{wrap(x, cells[0]), wrap(y, cells[1]), wrap(z, cells[2]), region, true, {x, y, z}};
+    for (int m = first_neighbor(region); m < first_neighbor(region + 1) && neighbors(m) < region; ++m)
       if (contains(neighbors(m), cell.i, cell.j, cell.k)) cell.unique = false;
     return cell;
   }

@@ -25,10 +25,8 @@ void build_slits(int c, const SolidSampler& solid, const FaceVector<OpenFraction
   const Field<OpenFraction> fraction = open[c];
   const Real diffusion = slit_diffusion(solid.grid, c, viscous_area);
   slits.count = list_where(
-      "flow::list_slits", near.count, scratch, KOKKOS_LAMBDA(Index n) {
-        const Int3 cell = candidates.cell(n);
-        return is_slit(fraction(cell[0], cell[1], cell[2]));
-      });
+      "flow::list_slits", near.count, scratch,
+      KOKKOS_LAMBDA(Index n) { return candidates.has(n, cell_part::slit, c); });
   slits.reserve(slits.count);
   const Slits target = slits;
   const SolidSampler sampler = solid;

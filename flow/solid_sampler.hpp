@@ -3,6 +3,7 @@
 // centroid of the closed part, and where an axis-parallel segment crosses the wall.
 #include "core/field.hpp"
 #include "flow/bodies.hpp"
+#include "flow/near_cells.hpp"
 #include "flow/open_fraction.hpp"
 
 namespace peclet::flow {
@@ -17,6 +18,7 @@ struct SolidSampler {
   BodyGeometry geometry;
   Field<Real> sdf;      // at cell centres, exact within a band around the surfaces
   Field<int> owner;     // nearest body of a cell within that band
+  Field<int> marks;     // of cells
   Field<Real> samples;  // the solid given as an array, if any
   Grid grid;
 
@@ -32,10 +34,9 @@ struct SolidSampler {
     return e < d ? e : d;
   }
 
-  template <int n>
-  KOKKOS_INLINE_FUNCTION void distances(int a, int b, const Vec3 (&x)[n], Real (&d)[n]) const {
-    if (a == b && a >= 0) return geometry.distances(a, x, d);
-    for (int m = 0; m < n; ++m) d[m] = distance(a, b, x[m]);
+  /// Radius if both owners are one sphere whose nearest image is all that matters, else 0.
+  KOKKOS_INLINE_FUNCTION Real sphere_radius(int a, int b) const {
+    return a == b && a >= 0 ? geometry.sphere_radius(geometry.bodies(a)) : 0.0;
   }
 
   /// Trilinear interpolation of the samples at cell centres.
@@ -64,6 +65,39 @@ struct FaceOpening {
   Real open = 1;                    // fraction of the area
   Real closed_s = 0, closed_t = 0;  // centroid of the closed part in units of the face edges, centre = 0
 };
+
+/// Corners of a face in units of its edges, centre = 0.
+inline constexpr Real corner_s[4] = {-0.5, 0.5, 0.5, -0.5}, corner_t[4] = {-0.5, -0.5, 0.5, 0.5};
+
+/// Distance at the centre and the corners of a face.
+struct FaceSamples {
+  Real middle, corner[4];
+};
+
+/// s and t run along the axes (axis + 1) % 3 and (axis + 2) % 3.
+KOKKOS_INLINE_FUNCTION FaceSamples sample_face(const SolidSampler& solid, int axis, int owner_low,
+                                               int owner_high, Vec3 center) {
+  const int axis_s = (axis + 1) % 3, axis_t = (axis + 2) % 3;
+  const Real width_s = solid.grid.spacing[axis_s], width_t = solid.grid.spacing[axis_t];
+  FaceSamples face;
+  if (const Real radius = solid.sphere_radius(owner_low, owner_high); radius > 0) {
+    const Vec3 arm = solid.geometry.arm(owner_low, center);
+    face.middle = norm(arm) - radius;
+    for (int n = 0; n < 4; ++n) {
+      const Real s = arm[axis_s] + corner_s[n] * width_s, t = arm[axis_t] + corner_t[n] * width_t;
+      face.corner[n] = Kokkos::sqrt(arm[axis] * arm[axis] + s * s + t * t) - radius;
+    }
+    return face;
+  }
+  face.middle = solid.distance(owner_low, owner_high, center);
+  for (int n = 0; n < 4; ++n) {
+    Vec3 x = center;
+    x[axis_s] += corner_s[n] * width_s;
+    x[axis_t] += corner_t[n] * width_t;
+    face.corner[n] = solid.distance(owner_low, owner_high, x);
+  }
+  return face;
+}
 
 /// Adds one triangle (a quarter of the face: the centre and two corners) to a face opening whose closed_s
 /// and closed_t accumulate first moments of the closed part.
@@ -99,21 +133,13 @@ KOKKOS_INLINE_FUNCTION void add_triangle(const Real (&d)[3], const Real (&s)[3],
   face.closed_t += moment_t;
 }
 
-/// Opening of the low face of cell (i, j, k) along axis, from five samples (centre and corners).
-/// s and t run along the axes (axis + 1) % 3 and (axis + 2) % 3.
+/// Opening of the low face of cell (i, j, k) along axis: the distance is linear on each triangle.
 KOKKOS_INLINE_FUNCTION FaceOpening face_opening(const SolidSampler& solid, int axis, int i, int j, int k,
                                                 int owner_low, int owner_high) {
-  const int axis_s = (axis + 1) % 3, axis_t = (axis + 2) % 3;
-  const Vec3 center = solid.grid.face_center(axis, i, j, k);
-  constexpr Real corner_s[4] = {-0.5, 0.5, 0.5, -0.5}, corner_t[4] = {-0.5, -0.5, 0.5, 0.5};
-  Vec3 x[5] = {center, center, center, center, center};
-  for (int n = 0; n < 4; ++n) {
-    x[n][axis_s] += corner_s[n] * solid.grid.spacing[axis_s];
-    x[n][axis_t] += corner_t[n] * solid.grid.spacing[axis_t];
-  }
-  Real d[5];
-  solid.distances(owner_low, owner_high, x, d);
-  const Real middle = d[4];
+  const FaceSamples samples =
+      sample_face(solid, axis, owner_low, owner_high, solid.grid.face_center(axis, i, j, k));
+  const Real middle = samples.middle;
+  const Real(&d)[4] = samples.corner;
   const int closed_count = (middle < 0) + (d[0] < 0) + (d[1] < 0) + (d[2] < 0) + (d[3] < 0);
   FaceOpening face;
   if (closed_count == 0) return face;
@@ -138,18 +164,32 @@ KOKKOS_INLINE_FUNCTION int nearest_owner(const SolidSampler& solid, int c, Index
   return low == high || solid.distance(low, x) < solid.distance(high, x) ? low : high;
 }
 
+/// The same for a sphere around the origin: smaller root of |x + root (y - x)| = radius.
+KOKKOS_INLINE_FUNCTION Real sphere_crossing(Real radius, Vec3 x, Vec3 y) {
+  const Real outside = dot(x, x) - radius * radius;
+  if (outside <= 0) return 0;
+  if (dot(y, y) >= radius * radius) return 1;
+  const Vec3 way = y - x;
+  const Real towards = -dot(x, way);
+  return outside / (towards + Kokkos::sqrt(towards * towards - dot(way, way) * outside));
+}
+
 /// Distance from x to the wall along the segment towards y, as a fraction of the segment: root of the
 /// signed distance by false position, where an end that stays twice counts half (Illinois rule); 1 where the
 /// solid begins beyond y.
 KOKKOS_INLINE_FUNCTION Real wall_crossing(const SolidSampler& solid, int owner_a, int owner_b, Vec3 x,
                                           Vec3 y) {
+  if (const Real radius = solid.sphere_radius(owner_a, owner_b); radius > 0) {
+    const Vec3 arm = solid.geometry.arm(owner_a, x);
+    return sphere_crossing(radius, arm, arm + (y - x));
+  }
   Real low = 0, high = 1;
   Real d_low = solid.distance(owner_a, owner_b, x), d_high = solid.distance(owner_a, owner_b, y);
   if (d_low <= 0) return 0;
   if (d_high >= 0) return 1;
   Real root = 1;
   int side = 0;  // of the wall on which the last root fell
-  for (int iteration = 0; iteration < 6; ++iteration) {
+  for (int iteration = 0; iteration < 30; ++iteration) {
     root = low + (high - low) * d_low / (d_low - d_high);
     const Real d = solid.distance(owner_a, owner_b, x + root * (y - x));
     if (Kokkos::abs(d) < 1e-9 * norm(y - x)) break;
@@ -181,15 +221,9 @@ KOKKOS_INLINE_FUNCTION NarrowGap narrow_gap(const SolidSampler& solid, int axis,
   const Layout& layout = solid.sdf.layout();
   const Index p = layout(i, j, k), q = p - layout.stride(axis);
   NarrowGap gap;
+  if (!(solid.marks[p] & cell_mark::between_bodies)) return gap;
   gap.first = solid.owner[p];
   int other = solid.owner[q];
-  bool is_alone = other == gap.first;
-  for (int a = 0; a < 3; ++a) {
-    const Index step = layout.stride(a);
-    is_alone = is_alone & (solid.owner[p - step] == gap.first) & (solid.owner[p + step] == gap.first) &
-               (solid.owner[q - step] == gap.first) & (solid.owner[q + step] == gap.first);
-  }
-  if (is_alone) return gap;
   for (int n = 0; n < 12 && other == gap.first; ++n) {
     const Index step = (n & 1 ? 1 : -1) * layout.stride(n / 4);
     other = solid.owner[(n & 2 ? p : q) + step];

@@ -76,7 +76,7 @@ KOKKOS_INLINE_FUNCTION Real least_distance(const SolidSampler& solid, int c, Ind
   const Real normal_speed = Kokkos::abs(dot(solid.geometry.velocity(body, x), gradient)) / steepness;
   if (normal_speed == 0) return smallest_wall_distance;
   const Real3& spacing = solid.grid.spacing;
-  const Real reach = normal_speed * Kokkos::fmin(spacing[0], Kokkos::fmin(spacing[1], spacing[2]));
+  const Real reach = normal_speed * Kokkos::min(spacing[0], Kokkos::min(spacing[1], spacing[2]));
   constexpr Real rise = smallest_moving_distance - smallest_wall_distance;
   return smallest_wall_distance + rise * reach / (reach + cell_reynolds_of_half_rise * viscosity);
 }
@@ -85,8 +85,9 @@ KOKKOS_INLINE_FUNCTION Real least_distance(const SolidSampler& solid, int c, Ind
 KOKKOS_INLINE_FUNCTION void set_weights(const WallRows& rows, Index row, Real least) {
   for (int a = 0; a < 3; ++a) {
     Real distance[2];
-    for (int s = 0; s < 2; ++s) distance[s] = Kokkos::fmax(rows.distance(row, 2 * a + s), least);
-    const Real total = Kokkos::fmax(distance[0] + distance[1], narrowest_stencil);
+    for (int s = 0; s < 2; ++s)
+      distance[s] = Kokkos::max(static_cast<Real>(rows.distance(row, 2 * a + s)), least);
+    const Real total = Kokkos::max(distance[0] + distance[1], narrowest_stencil);
     for (int s = 0; s < 2; ++s) rows.weight(row, 2 * a + s) = static_cast<float>(2 / (distance[s] * total));
   }
 }
@@ -118,11 +119,8 @@ void build_wall_rows(int c, const SolidSampler& solid, const FaceVector<OpenFrac
   const DomainSides box = sides;
   const SolidSampler sampler = solid;
   rows.count = list_where(
-      "flow::list_wall_rows", near.count, scratch, KOKKOS_LAMBDA(Index n) {
-        const Int3 cell = candidates.cell(n);
-        return is_fluid(fraction[c][layout(cell[0], cell[1], cell[2])]) &&
-               touches_wall(fraction, sampler.sdf, box, c, cell[0], cell[1], cell[2]);
-      });
+      "flow::list_wall_rows", near.count, scratch,
+      KOKKOS_LAMBDA(Index n) { return candidates.has(n, cell_part::wall_row, c); });
   rows.reserve(rows.count);
   const WallRows target = rows;
   for_each(

@@ -74,12 +74,13 @@ KOKKOS_INLINE_FUNCTION bool touches_wall(const FaceVector<OpenFraction>& open, c
     const bool low_side = sides.is_side(a, a == c ? at[a] - 1 : at[a], layout.cells);
     const bool high_side = sides.is_side(a, at[a] + 1, layout.cells);
     if (a == c) {
-      touched = touched || (low_side ? sdf[p - step] < 0 : open[c][p - step] < fully_open) ||
+      touched = touched | (low_side ? sdf[p - step] < 0 : open[c][p - step] < fully_open) |
                 (high_side ? sdf[p] < 0 : open[c][p + step] < fully_open);
     } else {
-      touched = touched || !is_fluid(open[c][p - step]) || !is_fluid(open[c][p + step]);
-      touched = touched || (!low_side && (open[a][p] < fully_open || open[a][p - own] < fully_open)) ||
-                (!high_side && (open[a][p + step] < fully_open || open[a][p + step - own] < fully_open));
+      const OpenFraction low = Kokkos::min(open[a][p], open[a][p - own]);
+      const OpenFraction high = Kokkos::min(open[a][p + step], open[a][p + step - own]);
+      touched = touched | !is_fluid(open[c][p - step]) | !is_fluid(open[c][p + step]) |
+                (!low_side & (low < fully_open)) | (!high_side & (high < fully_open));
     }
   }
   return touched;

@@ -67,6 +67,68 @@ TEST(ImmersedBoundary, AnUpdateGivesWhatANewBuildWould) {
   }
 }
 
+std::vector<Real> first_values(const Array<Real>& values, Index count) {
+  std::vector<Real> result = copy_to_host(values);
+  result.resize(static_cast<std::size_t>(count));
+  return result;
+}
+
+void expect_same_walls(const ImmersedBoundary& found, const ImmersedBoundary& expected) {
+  EXPECT_EQ(open_values(found), open_values(expected));
+  for (int c = 0; c < 3; ++c) {
+    const WallRows &rows = found.moving_rows(c), &expected_rows = expected.moving_rows(c);
+    EXPECT_EQ(first_values(rows.wall_sum, rows.count),
+              first_values(expected_rows.wall_sum, expected_rows.count));
+    const BodyFaces &faces = found.body_faces(c), &expected_faces = expected.body_faces(c);
+    EXPECT_EQ(first_values(faces.velocity, faces.count),
+              first_values(expected_faces.velocity, expected_faces.count));
+    EXPECT_EQ(found.slits(c).count, expected.slits(c).count);
+    EXPECT_EQ(found.covered_points(c), expected.covered_points(c));
+  }
+  const CutCells &cut = found.cut_cells(), &expected_cut = expected.cut_cells();
+  EXPECT_EQ(first_values(cut.wall_flux, cut.count), first_values(expected_cut.wall_flux, expected_cut.count));
+}
+
+/// Faces inside bodies that move with neither of two bodies that do not turn.
+Index faces_in_common_motion(const ImmersedBoundary& boundary, int c, Real first, Real second) {
+  const BodyFaces faces = boundary.body_faces(c);
+  return static_cast<Index>(sum_each(
+      "faces_in_common_motion", faces.count, KOKKOS_LAMBDA(Index n) {
+        return faces.velocity(n) == first || faces.velocity(n) == second ? 0.0 : 1.0;
+      }));
+}
+
+TEST(ImmersedBoundary, BodiesThatMeetAndPartLeaveNoTrace) {
+  const auto body = [](Vec3 center) { return moving({center, 1.1}, {0.1, 0.2, -0.1}); };
+  const Vec3 far{1.1, 7.2, 5.4}, beside{2.2, 3.1, 1.9}, across_the_side{0.6, 3.1, 1.9};
+  for (const bool other_moves : {true, false}) {
+    const SphereInTest other{{4.9, 3.1, 1.9}, 1.6, {{other_moves ? -0.3 : 0.0, 0, 0}, {}}};
+    BoundaryInTest moved({body(far), other});
+    const Field<Real> pressure("pressure", Layout(grid.cells));
+    for (const Vec3 center : {beside, far, across_the_side, beside, far}) {
+      moved.bodies.set_pose(0, center, {});
+      moved.boundary.update(moved.bodies, pressure, {0.1, 1e-2});
+      const BoundaryInTest fresh({body(center), other});
+      expect_same_walls(moved.boundary, fresh.boundary);
+      const bool is_far = center.y == far.y;
+      EXPECT_EQ(faces_in_common_motion(moved.boundary, 0, 0.1, other.twist.linear.x) == 0, is_far);
+    }
+  }
+}
+
+TEST(ImmersedBoundary, CoveredPointsAreThoseThatAreNoFluidAnyMore) {
+  const SphereInTest fixed{{4.9, 3.1, 1.9}, 1.6};
+  const BoundaryInTest alone({fixed}), both({moving({{2.9, 3.6, 2.2}, 1.2}, {0.1, 0, 0}), fixed});
+  for (int c = 0; c < 3; ++c) {
+    const std::vector<OpenFraction> before = host_values(alone.boundary.open()[c]);
+    const std::vector<OpenFraction> now = host_values(both.boundary.open()[c]);
+    int covered = 0;
+    for (std::size_t n = 0; n < now.size(); ++n) covered += is_fluid(before[n]) - is_fluid(now[n]);
+    EXPECT_GT(covered, 0);
+    EXPECT_EQ(both.boundary.covered_points(c), covered);
+  }
+}
+
 TEST(ImmersedBoundary, ChangedBoxesHoldEveryFaceThatChanged) {
   BoundaryInTest moved({moving(crossing_the_edge, {0.1, 0, 0})});
   const std::vector<OpenFraction> before = open_values(moved.boundary);

@@ -17,7 +17,7 @@ std::vector<int> unique_visits(const RegionList& list) {
   const RegionView view = list.view();
   for_each(
       "count_unique", list.number_of_cells(), KOKKOS_LAMBDA(Index n) {
-        const RegionCell cell = view.cell(n);
+        const RegionCell cell = view.at(n);
         if (cell.unique) Kokkos::atomic_add(&count(cell.i, cell.j, cell.k), 1);
       });
   std::vector<int> host(static_cast<std::size_t>(cells[0] * cells[1] * cells[2]));
@@ -43,11 +43,26 @@ bool covers(const Box& box, int i, int j, int k) {
   return false;
 }
 
+/// Places of a list where advance leads to another cell than at.
+Index stray_places(const RegionList& list) {
+  const RegionView view = list.view();
+  return static_cast<Index>(sum_each(
+      "stray_places", list.number_of_cells() - 1, KOKKOS_LAMBDA(Index n) {
+        RegionCell cell = view.at(n);
+        const RegionCell next = view.at(n + 1);
+        view.advance(cell);
+        const bool is_same = cell.i == next.i && cell.j == next.j && cell.k == next.k &&
+                             cell.region == next.region && cell.unique == next.unique;
+        return is_same ? 0.0 : 1.0;
+      }));
+}
+
 void expect_every_cell_once(const std::vector<Box>& boxes) {
   RegionList list(cells);
   std::vector<int> bodies;
   for (std::size_t b = 0; b < boxes.size(); ++b) bodies.push_back(static_cast<int>(b));
   list.assign(boxes, bodies);
+  EXPECT_EQ(stray_places(list), 0);
   const std::vector<int> unique = unique_visits(list), inside = visits_inside(list);
   std::size_t n = 0;
   for (int k = 0; k < cells[2]; ++k)

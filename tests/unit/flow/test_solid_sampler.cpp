@@ -107,6 +107,20 @@ TEST(WallCrossing, FindsTheSurfaceOfASphere) {
   EXPECT_NEAR(norm(wall - Vec3{2, 5, 3}), 1.3, 1e-8 * norm(to - from));
 }
 
+TEST(WallCrossing, FindsTheSurfaceOfASphereThatASegmentGrazes) {
+  const Vec3 center{2, 5, 3};
+  for (const bool has_images : {false, true}) {
+    Bodies bodies(scene_of({{center, 1.3}}), grid, has_images, {});
+    const SolidSampler solid = sampler_of(bodies);
+    for (const Real depth : {1e-2, 1e-4, 1e-6}) {
+      const Vec3 from{2.4, 5, 4.3 - depth}, to{2.0, 5, 4.3 - depth};
+      const Vec3 wall = from + crossing(solid, from, to) * (to - from);
+      EXPECT_NEAR(norm(wall - center), 1.3, 1e-9 * norm(to - from));
+      EXPECT_GT(wall.x, to.x);
+    }
+  }
+}
+
 TEST(WallCrossing, IsTheEndOfTheSegmentWhereItMeetsNoWall) {
   Bodies bodies(scene_of({{{2, 5, 3}, 1.3}}), grid, true, {});
   const SolidSampler solid = sampler_of(bodies);
