@@ -8,16 +8,15 @@ namespace {
 /// Bins of one body.
 enum Bin : int { Velocity, Previous, Points, bins_per_body };
 
-/// A point of component c and the body beside it; negative where there is none.
-struct OwnedPoint {
-  Vec3 x;
-  int body;
-};
-
-KOKKOS_INLINE_FUNCTION OwnedPoint owned_point(const SolidSampler& solid, int c, Index p) {
+KOKKOS_INLINE_FUNCTION Vec3 position(const SolidSampler& solid, int c, Index p) {
   const Int3 cell = cell_of(solid.sdf.layout(), p);
-  const Vec3 x = solid.grid.face_center(c, cell[0], cell[1], cell[2]);
-  return {x, nearest_owner(solid, c, p, x)};
+  return solid.grid.face_center(c, cell[0], cell[1], cell[2]);
+}
+
+/// The body beside a point of component c; negative where there is none.
+KOKKOS_INLINE_FUNCTION int body_beside(const SolidSampler& solid, int c, Index p) {
+  const int low = solid.owner[p - solid.owner.layout().stride(c)], high = solid.owner[p];
+  return low == high ? low : nearest_owner(solid, c, p, position(solid, c, p));
 }
 
 /// What covered points carry beyond the motion of their body, and the number of the others.
@@ -32,13 +31,13 @@ void sum_points(int c, const SolidSampler& solid, const Field<OpenFraction>& ope
   for_each_scattered(
       "flow::sum_covered_points", count, sums, KOKKOS_LAMBDA(Index n, int chunk) {
         const Index p = point(n);
-        const OwnedPoint at = owned_point(sampler, c, p);
-        if (at.body < 0) return;
-        const int first = bins_per_body * at.body;
+        const int body = body_beside(sampler, c, p);
+        if (body < 0) return;
+        const int first = bins_per_body * body;
         if (is_fluid(fraction[p])) {
           bins.add(chunk, first + Points, 1);
         } else {
-          const Real wall = sampler.geometry.velocity(at.body, at.x)[c];
+          const Real wall = sampler.geometry.velocity(body, position(sampler, c, p))[c];
           bins.add(chunk, first + Velocity, u[p] - wall);
           bins.add(chunk, first + Previous, before[p] - wall);
         }
@@ -57,7 +56,7 @@ void add_shares(int c, const SolidSampler& solid, const Field<OpenFraction>& ope
       "flow::hand_on_covered_momentum", count, KOKKOS_LAMBDA(Index n) {
         const Index p = point(n);
         if (!is_fluid(fraction[p])) return;
-        const int body = owned_point(sampler, c, p).body;
+        const int body = body_beside(sampler, c, p);
         if (body < 0) return;
         const int first = bins_per_body * body;
         u[p] += total(first + Velocity) / total(first + Points);

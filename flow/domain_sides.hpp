@@ -45,7 +45,7 @@ struct DomainSides {
   KOKKOS_INLINE_FUNCTION bool is_periodic(int axis) const { return side[axis][0].kind == SideKind::Periodic; }
   /// Whether index n of a face along axis lies on a side of the box: no wall of a body there.
   KOKKOS_INLINE_FUNCTION bool is_side(int axis, int n, const Int3& cells) const {
-    return !is_periodic(axis) && (n == 0 || n == cells[axis]);
+    return (n == 0 || n == cells[axis]) && !is_periodic(axis);
   }
   bool any(SideKind kind) const;
   /// Throws unless periodic sides come in pairs.

@@ -32,7 +32,7 @@ KOKKOS_INLINE_FUNCTION void fill_row(const WallRows& rows, Index row, int c, con
     for (int s = 0; s < 2; ++s) {
       const int d = 2 * a + s;
       const Index q = p + (s ? layout.stride(a) : -layout.stride(a));
-      rows.distance(row, d) = 1;
+      rows.distance(row, d) = rows.weight(row, d) = 1;
       rows.owner(row, d) = nearest;
       if (is_fluid(open[c][q])) continue;
       const bool on_side = a == c && sides.is_side(a, at[a] + (s ? 1 : -1), layout.cells);
@@ -81,9 +81,10 @@ KOKKOS_INLINE_FUNCTION Real least_distance(const SolidSampler& solid, int c, Ind
   return smallest_wall_distance + rise * reach / (reach + cell_reynolds_of_half_rise * viscosity);
 }
 
-/// Weights of a row whose wall distances are at least least.
+/// Weights of a row whose wall distances are at least least; they stay 1 along axes without a wall.
 KOKKOS_INLINE_FUNCTION void set_weights(const WallRows& rows, Index row, Real least) {
   for (int a = 0; a < 3; ++a) {
+    if (!rows.is_wall(row, 2 * a) && !rows.is_wall(row, 2 * a + 1)) continue;
     Real distance[2];
     for (int s = 0; s < 2; ++s)
       distance[s] = Kokkos::max(static_cast<Real>(rows.distance(row, 2 * a + s)), least);
@@ -136,6 +137,8 @@ void refresh_wall_motion(int c, const SolidSampler& solid, Real viscosity, const
   const Layout layout = solid.sdf.layout();
   for_each(
       "flow::refresh_wall_motion", rows.count, KOKKOS_LAMBDA(Index row) {
+        target.wall_sum(row) = 0;
+        if (target.walls(row) == 0) return;
         const Index p = target.face(row);
         const Int3 cell = cell_of(layout, p);
         const Vec3 x = sampler.grid.face_center(c, cell[0], cell[1], cell[2]);
