@@ -67,7 +67,8 @@ struct FaceOpening {
 };
 
 /// Corners of a face in units of its edges, centre = 0.
-inline constexpr Real corner_s[4] = {-0.5, 0.5, 0.5, -0.5}, corner_t[4] = {-0.5, -0.5, 0.5, 0.5};
+KOKKOS_INLINE_FUNCTION Real corner_s(int n) { return n == 1 || n == 2 ? 0.5 : -0.5; }
+KOKKOS_INLINE_FUNCTION Real corner_t(int n) { return n > 1 ? 0.5 : -0.5; }
 
 /// Distance at the centre and the corners of a face.
 struct FaceSamples {
@@ -84,7 +85,7 @@ KOKKOS_INLINE_FUNCTION FaceSamples sample_face(const SolidSampler& solid, int ax
     const Vec3 arm = solid.geometry.arm(owner_low, center);
     face.middle = norm(arm) - radius;
     for (int n = 0; n < 4; ++n) {
-      const Real s = arm[axis_s] + corner_s[n] * width_s, t = arm[axis_t] + corner_t[n] * width_t;
+      const Real s = arm[axis_s] + corner_s(n) * width_s, t = arm[axis_t] + corner_t(n) * width_t;
       face.corner[n] = Kokkos::sqrt(arm[axis] * arm[axis] + s * s + t * t) - radius;
     }
     return face;
@@ -92,8 +93,8 @@ KOKKOS_INLINE_FUNCTION FaceSamples sample_face(const SolidSampler& solid, int ax
   face.middle = solid.distance(owner_low, owner_high, center);
   for (int n = 0; n < 4; ++n) {
     Vec3 x = center;
-    x[axis_s] += corner_s[n] * width_s;
-    x[axis_t] += corner_t[n] * width_t;
+    x[axis_s] += corner_s(n) * width_s;
+    x[axis_t] += corner_t(n) * width_t;
     face.corner[n] = solid.distance(owner_low, owner_high, x);
   }
   return face;
@@ -147,7 +148,7 @@ KOKKOS_INLINE_FUNCTION FaceOpening face_opening(const SolidSampler& solid, int a
   for (int n = 0; n < 4; ++n) {
     const int m = (n + 1) % 4;
     const Real distance[3] = {middle, d[n], d[m]};
-    const Real s[3] = {0, corner_s[n], corner_s[m]}, t[3] = {0, corner_t[n], corner_t[m]};
+    const Real s[3] = {0, corner_s(n), corner_s(m)}, t[3] = {0, corner_t(n), corner_t(m)};
     add_triangle(distance, s, t, face);
   }
   const Real closed = 1 - face.open;

@@ -88,7 +88,7 @@ KOKKOS_INLINE_FUNCTION void set_weights(const WallRows& rows, Index row, Real le
     Real distance[2];
     for (int s = 0; s < 2; ++s)
       distance[s] = Kokkos::max(static_cast<Real>(rows.distance(row, 2 * a + s)), least);
-    const Real total = Kokkos::max(distance[0] + distance[1], narrowest_stencil);
+    const Real total = Kokkos::max(distance[0] + distance[1], Real{narrowest_stencil});
     for (int s = 0; s < 2; ++s) rows.weight(row, 2 * a + s) = static_cast<float>(2 / (distance[s] * total));
   }
 }
