@@ -44,8 +44,11 @@ class ImmersedBoundary {
   const std::vector<Box>& changed() const { return changed_; }
   /// Fluid points of component c of the fixed geometry that are none now.
   Real covered_points(int c) const;
-  bool has_slits() const { return slits_[0].count + slits_[1].count + slits_[2].count > 0; }
+  /// Rows and slits beside moving bodies depend on it.
   const WallFriction& friction() const { return friction_; }
+  bool has_moving_walls() const {
+    return moving_rows_[0].count + moving_rows_[1].count + moving_rows_[2].count > 0;
+  }
   std::size_t bytes() const;
 
  private:

@@ -92,7 +92,7 @@ void Solver::step() {
 }
 
 void Solver::advance() {
-  if (boundary_.has_slits() && boundary_.friction() != wall_friction()) geometry_stale_ = true;
+  if (boundary_.has_moving_walls() && boundary_.friction() != wall_friction()) geometry_stale_ = true;
   bring_geometry_up_to_date();
   if (wall_velocity_stale_) refresh_wall_velocity();
 

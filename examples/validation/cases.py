@@ -123,6 +123,16 @@ CASES = (
         full=lambda curves: settling_in_box("E4", 12, 0.02, 0.02, curves),
     ),
     Case(
+        "ten Cate E1, finer grid",
+        small=None,
+        full=lambda curves: settling_in_box("E1", 16, 0.02, 0.02),
+    ),
+    Case(
+        "ten Cate E4, finer grid",
+        small=None,
+        full=lambda curves: settling_in_box("E4", 16, 0.02, 0.02),
+    ),
+    Case(
         "settling in a wide tank, Re 20",
         small=None,
         full=lambda curves: settling_in_wide_tank(20, 12, 10, 18, 0.03, 0.04),
