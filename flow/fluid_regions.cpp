@@ -170,6 +170,25 @@ void subtract_means(const RowMasks& masks, Index rows, const Array<Real>& means,
       });
 }
 
+void copy_groups(const RowMasks& masks, Index rows, const Array<unsigned char>& group_of_region,
+                 const Field<unsigned char>& group, const Array<Box>& boxes) {
+  for_each(
+      "flow::groups", rows, KOKKOS_LAMBDA(Index row) {
+        const int ny = masks.shape.cells[1];
+        const int j = static_cast<int>(row % ny), k = static_cast<int>(row / ny);
+        unsigned char* const groups = &group[group.layout()(0, j, k)];
+        for_each_run(masks, row, [&](int i, int run) {
+          const Int3 begin{i, j, k}, end{masks.run_end(row, i), j + 1, k + 1};
+          const unsigned char own = group_of_region(masks.region_of(run));
+          for (int m = begin[0]; m < end[0]; ++m) groups[m] = own;
+          for (int axis = 0; axis < 3; ++axis) {
+            Kokkos::atomic_min(&boxes(own).low[axis], begin[axis]);
+            Kokkos::atomic_max(&boxes(own).high[axis], end[axis]);
+          }
+        });
+      });
+}
+
 void divide_sums(Index number, const Array<Index>& cells, const Array<int>& fixed, const Array<Real>& means) {
   for_each(
       "flow::means", number,
@@ -224,6 +243,7 @@ FluidRegions::FluidRegions(const LevelShape& shape) : shape_(shape) {
   open_ = Array<Word>("region_open", rows * words);
   parent_ = Array<int>("region_parent", shape.number_of_cells());
   row_offset_ = Array<Index>("region_offset", rows + 1);
+  group_boxes_ = Array<Box>("region_group_boxes", most_groups);
   reserve(64);
 }
 
@@ -273,9 +293,35 @@ void FluidRegions::merge_runs(const LevelOperator<OpenFraction>& op) {
   Kokkos::deep_copy(fixed_, 0);
   mark_fixed(m, op, fixed_);
   Kokkos::deep_copy(first_is_fixed_, Kokkos::subview(fixed_, 0));
+  groups_ = 1;
   if (number_ < 2) return;
   Kokkos::deep_copy(cells_, 0);
   count_cells(m, rows, cells_);
+  form_groups();
+}
+
+void FluidRegions::form_groups() {
+  const std::vector<Index> cells = copy_to_host(cells_);
+  std::vector<Index> large;
+  for (Index region = 0; region < number_; ++region)
+    if (cells[region] >= fewest_cells) large.push_back(region);
+  if (large.size() < 2) return;
+  std::stable_sort(large.begin(), large.end(), [&](Index a, Index b) { return cells[a] > cells[b]; });
+  std::vector<unsigned char> groups(cells.size(), 0);
+  groups_ = 0;
+  for (const Index region : large) {
+    groups_ = std::min(groups_ + 1, most_groups);
+    groups[region] = static_cast<unsigned char>(groups_ - 1);
+  }
+  upload("region_group", groups, group_of_region_);
+}
+
+std::vector<Box> FluidRegions::write_groups(const Field<unsigned char>& group) const {
+  Kokkos::deep_copy(group_boxes_, Box{shape_.cells, {0, 0, 0}});
+  copy_groups(masks(), row_offset_.extent(0) - 1, group_of_region_, group, group_boxes_);
+  std::vector<Box> boxes = copy_to_host(group_boxes_);
+  boxes.resize(static_cast<std::size_t>(groups_));
+  return boxes;
 }
 
 void FluidRegions::remove_means(const Field<Real>& rhs) const {
@@ -288,7 +334,7 @@ void FluidRegions::remove_means(const Field<Real>& rhs) const {
 
 std::size_t FluidRegions::bytes() const {
   return 4 * open_.span() * sizeof(Word) + parent_.span() * sizeof(int) + row_offset_.span() * sizeof(Index) +
-         cells_.span() * (sizeof(Index) + sizeof(int) + sizeof(Real));
+         cells_.span() * (sizeof(Index) + sizeof(int) + sizeof(Real)) + group_of_region_.span();
 }
 
 }  // namespace peclet::flow

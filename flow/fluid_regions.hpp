@@ -91,12 +91,20 @@ class FluidRegions {
   Index number_of_open_cells() const { return open_cells_; }
   /// Whether a Fixed side touches the first region.
   bool first_is_fixed() const { return first_is_fixed_ != 0; }
+  /// Large regions are parted into groups, at most most_groups: the largest ones are alone in theirs. 1
+  /// unless there are several large regions; small ones follow the largest one.
+  int number_of_groups() const { return groups_; }
+  /// Writes the group of every cell with an open face; returns the box around each group.
+  std::vector<Box> write_groups(const Field<unsigned char>& group) const;
   /// Subtracts from rhs its mean over each region that no Fixed side touches.
   void remove_means(const Field<Real>& rhs) const;
   std::size_t bytes() const;
 
  private:
+  static constexpr int most_groups = 4, fewest_cells = 512;  // of a large region
+
   RowMasks masks() const;
+  void form_groups();
   void reserve(Index number);
   void merge_runs(const LevelOperator<OpenFraction>& op);
 
@@ -110,7 +118,10 @@ class FluidRegions {
   Array<Index> cells_;  ///< per region, like fixed_ and mean_
   Array<int> fixed_;
   Array<Real> mean_;
+  Array<unsigned char> group_of_region_;
+  Array<Box> group_boxes_;
   Index number_ = 0, open_cells_ = 0;
+  int groups_ = 1;
   int first_is_fixed_ = 0;
 };
 

@@ -4,6 +4,8 @@
 #include <limits>
 #include <string>
 
+#include "flow/group_transfer.hpp"
+
 namespace peclet::flow {
 namespace {
 
@@ -83,6 +85,20 @@ RowRanges prolongation_rows(const RowRanges& rows, const Merging& merging) {
   return result;
 }
 
+SweepPlan plan_of(const LevelShape& shape, const RowRanges& rows, const Transfer& transfer) {
+  const PressureSides& sides = shape.sides;
+  return SweepPlan(shape.cells, rows.box, {sides.is_periodic(0), sides.is_periodic(1), sides.is_periodic(2)},
+                   transfer.merging.shift);
+}
+
+void clear(const LevelFields& fields) {
+  fields.rhs.fill(0);
+  fields.solution.fill(0);
+  fields.scratch.fill(0);
+}
+
+bool same_box(const Box& a, const Box& b) { return a.low == b.low && a.high == b.high; }
+
 template <class T>
 std::size_t bytes_of(const Field<T>& field) {
   return field.array().span() * sizeof(T);
@@ -93,8 +109,8 @@ std::size_t bytes_of(const RowRanges& rows) { return (rows.first.span() + rows.l
 }  // namespace
 
 template <bool reactive>
-BasicMultigrid<reactive>::BasicMultigrid(const Int3& cells, const Real3& spacing,
-                                         const PressureSides& sides) {
+BasicMultigrid<reactive>::BasicMultigrid(const Int3& cells, const Real3& spacing, const PressureSides& sides)
+    : groups_(1) {
   Real smallest = std::numeric_limits<Real>::infinity();
   for (int axis = 0; axis < 3; ++axis)
     if (cells[axis] > 1) smallest = std::min(smallest, spacing[axis]);
@@ -104,123 +120,206 @@ BasicMultigrid<reactive>::BasicMultigrid(const Int3& cells, const Real3& spacing
 
   stiffness_ = 1 / (smallest * smallest);
 
+  std::vector<Level>& levels = groups_[0].levels;
   LevelShape shape(cells, sides);
   for (;;) {
-    Level level;
-    level.shape = shape;
-    const std::string name = "multigrid_" + std::to_string(levels_.size());
-    level.fields.rhs = Field<float>(name + ".rhs", level.shape.layout);
-    level.fields.solution = Field<float>(name + ".solution", level.shape.layout);
-    level.fields.scratch = Field<float>(name + ".scratch", level.shape.layout);
-    if (!levels_.empty()) {
-      level.coefficients = FaceVector<float>(name + ".coefficients", level.shape.layout);
-      if constexpr (reactive) {
-        level.reaction.total = Field<float>(name + ".reaction", level.shape.layout);
-        level.reaction.volume = Field<float>(name + ".volume", level.shape.layout);
-        level.op =
-            ReactiveOperator<float>(level.shape, level.coefficients, Real3{1, 1, 1}, level.reaction.total);
-      } else {
-        level.op = LevelOperator<float>(level.shape, level.coefficients, Real3{1, 1, 1});
-      }
-    }
-    levels_.push_back(level);
-    if (level.shape.number_of_cells() <= (reactive ? 32 : CoarseSolver::largest_size)) break;
-    levels_.back().transfer.merging = next_merging(shape, spacing);
-    shape = LevelShape(shape, levels_.back().transfer.merging);
+    levels.push_back(make_level(shape, static_cast<int>(levels.size())));
+    if (shape.number_of_cells() <= (reactive ? 32 : CoarseSolver::largest_size)) break;
+    levels.back().transfer.merging = next_merging(shape, spacing);
+    shape = LevelShape(shape, levels.back().transfer.merging);
   }
-  coarse_solver_ = CoarseSolver(levels_.back().shape);
+  groups_[0].coarse_solver = CoarseSolver(shape);
+}
+
+template <bool reactive>
+typename BasicMultigrid<reactive>::Level BasicMultigrid<reactive>::make_level(const LevelShape& shape,
+                                                                              int number) {
+  Level level;
+  level.shape = shape;
+  const std::string name = "multigrid_" + std::to_string(number);
+  level.fields.rhs = Field<float>(name + ".rhs", shape.layout);
+  level.fields.solution = Field<float>(name + ".solution", shape.layout);
+  level.fields.scratch = Field<float>(name + ".scratch", shape.layout);
+  if (number == 0) return level;
+  level.coefficients = FaceVector<float>(name + ".coefficients", shape.layout);
+  if constexpr (reactive) {
+    level.reaction.total = Field<float>(name + ".reaction", shape.layout);
+    level.reaction.volume = Field<float>(name + ".volume", shape.layout);
+    level.op = ReactiveOperator<float>(shape, level.coefficients, Real3{1, 1, 1}, level.reaction.total);
+  } else {
+    level.op = LevelOperator<float>(shape, level.coefficients, Real3{1, 1, 1});
+  }
+  return level;
 }
 
 template <bool reactive>
 void BasicMultigrid<reactive>::set_open_fractions(const FaceVector<OpenFraction>& open, const RowRanges& rows,
                                                   const Field<float>& reaction) {
+  groups_.resize(1);
+  std::vector<Level>& levels = groups_[0].levels;
   open_ = open;
-  levels_[0].reaction.total = reaction;
+  levels[0].reaction.total = reaction;
   if constexpr (reactive)
-    finest_ = ReactiveOperator<OpenFraction>(levels_[0].shape, open, weights_, reaction);
+    finest_ = ReactiveOperator<OpenFraction>(levels[0].shape, open, weights_, reaction);
   else
-    finest_ = LevelOperator<OpenFraction>(levels_[0].shape, open, weights_);
-  for (std::size_t l = 0; l < levels_.size(); ++l) {
-    Level& level = levels_[l];
-    const PressureSides& sides = level.shape.sides;
-    level.rows = l == 0 ? aligned_rows(rows, level.shape)
-                        : coarse_rows(levels_[l - 1].rows, level.shape, levels_[l - 1].transfer.merging);
-    level.plan = SweepPlan(level.shape.cells, level.rows.box,
-                           {sides.is_periodic(0), sides.is_periodic(1), sides.is_periodic(2)},
-                           level.transfer.merging.shift);
-    level.fields.rhs.fill(0);
-    level.fields.solution.fill(0);
-    level.fields.scratch.fill(0);
-    if (l == 0) continue;
-    Transfer& transfer = levels_[l - 1].transfer;
+    finest_ = LevelOperator<OpenFraction>(levels[0].shape, open, weights_);
+  levels[0].rows = aligned_rows(rows, levels[0].shape);
+  levels[0].plan = plan_of(levels[0].shape, levels[0].rows, levels[0].transfer);
+  clear(levels[0].fields);
+  set_rows(groups_[0], levels[0].rows);
+  update({Box{{0, 0, 0}, levels[0].shape.cells}});
+}
+
+template <bool reactive>
+void BasicMultigrid<reactive>::set_rows(Group& group, const RowRanges& rows) {
+  group.rows = rows;
+  for (std::size_t l = 1; l < group.levels.size(); ++l) {
+    Level& level = group.levels[l];
+    Transfer& transfer = group.levels[l - 1].transfer;
+    const RowRanges& finer = l == 1 ? rows : group.levels[l - 1].rows;
+    level.rows = coarse_rows(finer, level.shape, transfer.merging);
+    level.plan = plan_of(level.shape, level.rows, level.transfer);
+    clear(level.fields);
+    for (int axis = 0; axis < 3; ++axis) level.coefficients[axis].fill(0);
     transfer.coarse_shape = level.shape;
     transfer.coarse_rows = level.rows;
-    transfer.prolongation_rows = prolongation_rows(levels_[l - 1].rows, transfer.merging);
+    transfer.prolongation_rows = prolongation_rows(finer, transfer.merging);
   }
-  update({Box{{0, 0, 0}, levels_[0].shape.cells}});
+}
+
+template <bool reactive>
+void BasicMultigrid<reactive>::set_groups(const std::vector<Box>& boxes, const Field<unsigned char>& group) {
+  if (number_of_levels() == 1) return;
+  group_ = group;
+  while (groups_.size() < boxes.size()) add_group();
+  groups_.resize(boxes.size());
+  for (std::size_t g = 0; g < boxes.size(); ++g)
+    if (!same_box(groups_[g].rows.box, boxes[g])) set_rows(groups_[g], RowRanges(boxes[g]));
+  update({Box{{0, 0, 0}, finest_level().shape.cells}});
+}
+
+template <bool reactive>
+void BasicMultigrid<reactive>::join_groups() {
+  if (number_of_groups() == 1) return;
+  groups_.resize(1);
+  set_rows(groups_[0], finest_level().rows);
+  update({Box{{0, 0, 0}, finest_level().shape.cells}});
+}
+
+template <bool reactive>
+void BasicMultigrid<reactive>::add_group() {
+  Group group;
+  for (const Level& level : groups_[0].levels) {
+    const int number = static_cast<int>(group.levels.size());
+    group.levels.push_back(number == 0 ? level : make_level(level.shape, number));
+    group.levels.back().transfer.merging = level.transfer.merging;
+  }
+  group.coarse_solver = CoarseSolver(group.levels.back().shape);
+  groups_.push_back(group);
 }
 
 template <bool reactive>
 void BasicMultigrid<reactive>::update(const std::vector<Box>& changed) {
-  const std::vector<Box> pieces = pieces_inside(levels_[0].shape, changed);
-  for (std::size_t l = 1; l < levels_.size(); ++l) {
-    const LevelShape& shape = levels_[l].shape;
-    const Merging& merging = levels_[l - 1].transfer.merging;
-    std::vector<Box> boxes;
-    for (const Box& piece : pieces) boxes.push_back(covering_cells(shape, piece));
-    changed_.assign(boxes);
-    if (l == 1)
-      derive_coefficients<OpenFraction>(finest_, shape, merging, changed_, levels_[l].coefficients);
-    else
-      derive_coefficients<float>(levels_[l - 1].op, shape, merging, changed_, levels_[l].coefficients);
-    if constexpr (reactive)
-      derive_reaction(levels_[l - 1].shape, levels_[l - 1].reaction, merging, changed_, levels_[l].reaction);
+  const std::vector<Box> pieces = pieces_inside(finest_level().shape, changed);
+  for (int g = 0; g < number_of_groups(); ++g) {
+    derive(g, number_of_groups() == 1 ? pieces : std::vector<Box>{groups_[g].rows.box});
+    set_coarse_operator(groups_[g]);
   }
-  set_coarse_operator();
 }
 
 template <bool reactive>
-void BasicMultigrid<reactive>::set_coarse_operator() const {
+void BasicMultigrid<reactive>::derive(int group, const std::vector<Box>& pieces) {
+  std::vector<Level>& levels = groups_[group].levels;
+  for (std::size_t l = 1; l < levels.size(); ++l) {
+    const LevelShape& shape = levels[l].shape;
+    const Merging& merging = levels[l - 1].transfer.merging;
+    const FaceVector<float>& coefficients = levels[l].coefficients;
+    std::vector<Box> boxes;
+    for (const Box& piece : pieces) boxes.push_back(covering_cells(shape, piece));
+    changed_.assign(boxes);
+    if (l > 1)
+      derive_coefficients<LevelOperator<float>>(levels[l - 1].op, shape, merging, changed_, coefficients);
+    else if (number_of_groups() > 1)
+      derive_coefficients(GroupOperator{finest_, group_.data(), static_cast<unsigned char>(group)}, shape,
+                          merging, changed_, coefficients);
+    else
+      derive_coefficients<LevelOperator<OpenFraction>>(finest_, shape, merging, changed_, coefficients);
+    if constexpr (reactive)
+      derive_reaction(levels[l - 1].shape, levels[l - 1].reaction, merging, changed_, levels[l].reaction);
+  }
+}
+
+template <bool reactive>
+void BasicMultigrid<reactive>::set_coarse_operator(const Group& group) const {
   const float* reaction = nullptr;
-  if constexpr (reactive) reaction = levels_.back().reaction.total.data();
-  if (levels_.size() == 1)
-    coarse_solver_.set_operator<OpenFraction>(finest_, reaction);
+  if constexpr (reactive) reaction = group.levels.back().reaction.total.data();
+  if (group.levels.size() == 1)
+    group.coarse_solver.template set_operator<OpenFraction>(finest_, reaction);
   else
-    coarse_solver_.set_operator<float>(levels_.back().op, reaction);
+    group.coarse_solver.template set_operator<float>(group.levels.back().op, reaction);
+}
+
+template <bool reactive>
+void BasicMultigrid<reactive>::apply_below(const Group& group) const {
+  const std::vector<Level>& levels = group.levels;
+  const std::size_t last = levels.size() - 1;
+  for (std::size_t l = 1; l < last; ++l) {
+    const Level& level = levels[l];
+    smooth_and_restrict(level.op, level.plan, level.rows, level.transfer, level.fields,
+                        levels[l + 1].fields.rhs);
+  }
+  group.coarse_solver.solve(levels[last].fields.rhs, levels[last].fields.solution);
+  for (std::size_t l = last; l-- > 1;) {
+    const Level& level = levels[l];
+    prolong_and_smooth(level.op, level.plan, level.rows, level.transfer, level.fields,
+                       levels[l + 1].fields.solution);
+  }
 }
 
 template <bool reactive>
 Real BasicMultigrid<reactive>::apply() const {
-  const std::size_t last = levels_.size() - 1;
-  for (std::size_t l = 0; l < last; ++l) {
-    const Level& level = levels_[l];
-    const Field<float>& coarse_rhs = levels_[l + 1].fields.rhs;
-    if (l == 0)
-      smooth_and_restrict(finest_, level.plan, level.rows, level.transfer, level.fields, coarse_rhs);
-    else
-      smooth_and_restrict(level.op, level.plan, level.rows, level.transfer, level.fields, coarse_rhs);
+  const Level& finest = finest_level();
+  if (number_of_levels() == 1) {
+    apply_below(groups_[0]);
+    return dot(finest.fields.solution, finest.fields.rhs, finest.rows, finest.plan);
   }
-  coarse_solver_.solve(levels_[last].fields.rhs, levels_[last].fields.solution);
-  for (std::size_t l = last; l-- > 1;) {
-    const Level& level = levels_[l];
-    prolong_and_smooth(level.op, level.plan, level.rows, level.transfer, level.fields,
-                       levels_[l + 1].fields.solution);
-  }
-  const Level& finest = levels_[0];
-  if (last == 0) return dot(finest.fields.solution, finest.fields.rhs, finest.rows, finest.plan);
+  if constexpr (!reactive)
+    if (number_of_groups() > 1) return apply_by_groups();
+  const LevelFields& below = groups_[0].levels[1].fields;
+  smooth_and_restrict(finest_, finest.plan, finest.rows, finest.transfer, finest.fields, below.rhs);
+  apply_below(groups_[0]);
   return prolong_and_smooth(finest_, finest.plan, finest.rows, finest.transfer, finest.fields,
-                            levels_[1].fields.solution);
+                            below.solution);
+}
+
+/// The same with several groups.
+template <bool reactive>
+Real BasicMultigrid<reactive>::apply_by_groups() const {
+  const Level& finest = finest_level();
+  const Merging& merging = finest.transfer.merging;
+  smooth_from_zero<LevelOperator<OpenFraction>>(finest_, finest.plan, finest.rows, finest.fields);
+  for (int g = 0; g < number_of_groups(); ++g) {
+    const Level& below = groups_[g].levels[1];
+    restrict_group(group_, g, merging, finest.fields.scratch, below.rows, below.fields.rhs);
+    apply_below(groups_[g]);
+    prolong_group(group_, g, merging, below.fields.solution, groups_[g].rows, finest.fields.solution);
+  }
+  return smooth<LevelOperator<OpenFraction>>(finest_, finest.plan, finest.rows, finest.fields);
 }
 
 template <bool reactive>
 std::size_t BasicMultigrid<reactive>::bytes() const {
-  std::size_t total = coarse_solver_.bytes();
-  for (const Level& level : levels_) {
-    total += bytes_of(level.fields.rhs) + bytes_of(level.fields.solution) + bytes_of(level.fields.scratch);
-    for (int axis = 0; axis < 3; ++axis)
-      if (level.coefficients[axis].is_allocated()) total += bytes_of(level.coefficients[axis]);
-    if (level.reaction.volume.is_allocated()) total += 2 * bytes_of(level.reaction.volume);
-    total += bytes_of(level.rows) + bytes_of(level.transfer.prolongation_rows);
+  std::size_t total = 0;
+  for (int g = 0; g < number_of_groups(); ++g) {
+    total += groups_[g].coarse_solver.bytes();
+    for (std::size_t l = g == 0 ? 0 : 1; l < groups_[g].levels.size(); ++l) {
+      const Level& level = groups_[g].levels[l];
+      total += bytes_of(level.fields.rhs) + bytes_of(level.fields.solution) + bytes_of(level.fields.scratch);
+      for (int axis = 0; axis < 3; ++axis)
+        if (level.coefficients[axis].is_allocated()) total += bytes_of(level.coefficients[axis]);
+      if (level.reaction.volume.is_allocated()) total += 2 * bytes_of(level.reaction.volume);
+      total += bytes_of(level.rows) + bytes_of(level.transfer.prolongation_rows);
+    }
   }
   return total;
 }

@@ -3,7 +3,8 @@
 //
 // Cells are merged in pairs along the axes of small spacing until a direct solver takes over; restriction
 // sums, prolongation copies, and the coarse operator is discretised anew on the coarse distances: half the
-// sum of the merged coefficients on regular cells [Braess1995].
+// sum of the merged coefficients on regular cells [Braess1995]. Each group of fluid regions that walls part
+// has coarse levels of its own.
 #include <type_traits>
 #include <vector>
 
@@ -27,22 +28,28 @@ class BasicMultigrid {
   void set_open_fractions(const FaceVector<OpenFraction>& open, const RowRanges& rows,
                           const Field<float>& reaction = {});
   /// The part of the reaction that is in proportion to the volume, for a finest cell.
-  void set_volume_reaction(Real value) { levels_[0].reaction.finest_volume = value; }
+  void set_volume_reaction(Real value) { finest_level().reaction.finest_volume = value; }
+  /// Parts the cells below the finest level by groups of fluid regions: group is the number of the group of
+  /// each finest cell, boxes lie around the groups. Shares the field and derives all levels.
+  void set_groups(const std::vector<Box>& boxes, const Field<unsigned char>& group);
+  /// All cells are of one group again.
+  void join_groups();
+  int number_of_groups() const { return static_cast<int>(groups_.size()); }
   /// Derives the coarse faces anew that depend on the faces of cells in the boxes.
   void update(const std::vector<Box>& changed);
 
   /// Right-hand side and result of the V-cycle; zero in cells without an open face.
-  const Field<float>& residual() const { return levels_[0].fields.rhs; }
-  const Field<float>& correction() const { return levels_[0].fields.solution; }
+  const Field<float>& residual() const { return finest_level().fields.rhs; }
+  const Field<float>& correction() const { return finest_level().fields.solution; }
   /// correction = V-cycle applied to residual, symmetric and positive; returns correction . residual.
   Real apply() const;
 
   /// The operator of the levels times this is the one in physical units: 1 over the smallest spacing squared.
   Real stiffness() const { return stiffness_; }
   const Operator<OpenFraction>& finest_operator() const { return finest_; }
-  const RowRanges& rows() const { return levels_[0].rows; }
-  const SweepPlan& plan() const { return levels_[0].plan; }
-  int number_of_levels() const { return static_cast<int>(levels_.size()); }
+  const RowRanges& rows() const { return finest_level().rows; }
+  const SweepPlan& plan() const { return finest_level().plan; }
+  int number_of_levels() const { return static_cast<int>(groups_[0].levels.size()); }
   std::size_t bytes() const;
 
  private:
@@ -57,15 +64,30 @@ class BasicMultigrid {
     Transfer transfer;  ///< to the next coarser level
   };
 
-  void set_coarse_operator() const;
+  /// The levels of one group. The finest one is shared by all groups.
+  struct Group {
+    std::vector<Level> levels;
+    CoarseSolver coarse_solver;
+    RowRanges rows;  ///< finest cells
+  };
+
+  const Level& finest_level() const { return groups_[0].levels[0]; }
+  Level& finest_level() { return groups_[0].levels[0]; }
+  static Level make_level(const LevelShape& shape, int number);
+  void add_group();
+  static void set_rows(Group& group, const RowRanges& rows);
+  void derive(int group, const std::vector<Box>& pieces);
+  void set_coarse_operator(const Group& group) const;
+  void apply_below(const Group& group) const;
+  Real apply_by_groups() const;
 
   Real3 weights_{1, 1, 1};
   Real stiffness_ = 1;
   Operator<OpenFraction> finest_;
   FaceVector<OpenFraction> open_;
-  std::vector<Level> levels_;
-  BoxList changed_;  // of one level
-  CoarseSolver coarse_solver_;
+  std::vector<Group> groups_;
+  Field<unsigned char> group_;  // of each finest cell
+  BoxList changed_;             // of one level
 };
 
 using Multigrid = BasicMultigrid<false>;

@@ -3,16 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "flow/group_transfer.hpp"
+
 namespace peclet::flow {
 namespace {
 
 constexpr int vector_length = Layout::alignment;
 
 /// Sum of the fine coefficients on a coarse face normal to axis, scaled to the coarse distance.
-template <class Coefficient>
-KOKKOS_INLINE_FUNCTION float coarse_coefficient(const LevelOperator<Coefficient>& fine,
-                                                const LevelShape& coarse, const Merging& merging, int axis,
-                                                const Int3& face) {
+template <class Operator>
+KOKKOS_INLINE_FUNCTION float coarse_coefficient(const Operator& fine, const LevelShape& coarse,
+                                                const Merging& merging, int axis, const Int3& face) {
   if (coarse.is_collapsed(axis)) return 0;
   const Layout& layout = fine.shape.layout;
   Int3 low;
@@ -24,22 +25,22 @@ KOKKOS_INLINE_FUNCTION float coarse_coefficient(const LevelOperator<Coefficient>
     step[a] = (end < n ? end : n) - low[a] > 1 ? layout.stride(a) : 0;
   }
   const int b = (axis + 1) % 3, c = (axis + 2) % 3;
-  const Coefficient* const values =
-      (axis == 0 ? fine.x : (axis == 1 ? fine.y : fine.z)) + layout(low[0], low[1], low[2]);
-  Real sum = static_cast<Real>(values[0]);
-  if (step[b]) sum += static_cast<Real>(values[step[b]]);
-  if (step[c]) sum += static_cast<Real>(values[step[c]]);
-  if (step[b] && step[c]) sum += static_cast<Real>(values[step[b] + step[c]]);
+  const Index first = layout(low[0], low[1], low[2]);
+  const Index to_cell = low[axis] < fine.shape.cells[axis] ? 0 : -layout.stride(axis);
+  const auto value = [&](Index step) { return fine.coefficient(axis, first + step, first + step + to_cell); };
+  Real sum = value(0);
+  if (step[b]) sum += value(step[b]);
+  if (step[c]) sum += value(step[c]);
+  if (step[b] && step[c]) sum += value(step[b] + step[c]);
   return static_cast<float>(sum * fine.weight[axis] * fine.shape.twice_distance(axis, low[axis]) /
                             coarse.twice_distance(axis, face[axis]));
 }
 
 }  // namespace
 
-template <class Coefficient>
-void derive_coefficients(const LevelOperator<Coefficient>& fine, const LevelShape& coarse,
-                         const Merging& merging, const BoxList& boxes,
-                         const FaceVector<float>& coefficients) {
+template <class Operator>
+void derive_coefficients(const Operator& fine, const LevelShape& coarse, const Merging& merging,
+                         const BoxList& boxes, const FaceVector<float>& coefficients) {
   const FaceVector<float> c = coefficients;
   for_each_cell(
       "flow::coarsen", boxes, KOKKOS_LAMBDA(int i, int j, int k) {
@@ -55,6 +56,8 @@ void derive_coefficients(const LevelOperator<Coefficient>& fine, const LevelShap
 
 template void derive_coefficients(const LevelOperator<OpenFraction>&, const LevelShape&, const Merging&,
                                   const BoxList&, const FaceVector<float>&);
+template void derive_coefficients(const GroupOperator&, const LevelShape&, const Merging&, const BoxList&,
+                                  const FaceVector<float>&);
 template void derive_coefficients(const LevelOperator<float>&, const LevelShape&, const Merging&,
                                   const BoxList&, const FaceVector<float>&);
 

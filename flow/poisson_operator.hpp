@@ -19,7 +19,7 @@ namespace peclet::flow {
 /// coarse cell I has the children 2 I - s and 2 I - s + 1, as far as they exist: of an odd number of cells
 /// the last one (s = 0) or the first one (s = 1) stays alone.
 struct Merging {
-  Int3 ratio{1, 1, 1}, shift{0, 0, 0};
+  Int3 ratio{1, 1, 1}, shift{0, 0, 0};  ///< ratio is 1 or 2
 
   KOKKOS_INLINE_FUNCTION int first_child(int axis, int cell) const {
     const int child = ratio[axis] * cell - shift[axis];
@@ -29,10 +29,12 @@ struct Merging {
   KOKKOS_INLINE_FUNCTION int end_of_children(int axis, int cell) const {
     return ratio[axis] * (cell + 1) - shift[axis];
   }
-  KOKKOS_INLINE_FUNCTION int parent(int axis, int cell) const { return (cell + shift[axis]) / ratio[axis]; }
+  KOKKOS_INLINE_FUNCTION int parent(int axis, int cell) const {
+    return (cell + shift[axis]) >> (ratio[axis] - 1);
+  }
   /// One past the last parent of the cells before this one.
   KOKKOS_INLINE_FUNCTION int end_of_parents(int axis, int cell) const {
-    return (cell + shift[axis] + ratio[axis] - 1) / ratio[axis];
+    return (cell + shift[axis] + ratio[axis] - 1) >> (ratio[axis] - 1);
   }
 };
 
@@ -222,6 +224,10 @@ struct LevelOperator {
   KOKKOS_INLINE_FUNCTION Coefficient used(int axis) const {
     return static_cast<Coefficient>(weight[axis] > 0 ? -1 : 0);
   }
+  /// Stored coefficient of a face from the linear indices of the face and of a cell beside it.
+  KOKKOS_INLINE_FUNCTION Real coefficient(int axis, Index face, Index) const {
+    return static_cast<Real>(axis == 0 ? x[face] : (axis == 1 ? y[face] : z[face]));
+  }
   /// Coefficient of the face low of cell (i, j, k), or of the face of index n beyond the last cell.
   KOKKOS_INLINE_FUNCTION Real face(int axis, int i, int j, int k) const {
     const Index n = shape.layout(i, j, k);
@@ -265,9 +271,9 @@ RowRanges aligned_rows(const RowRanges& rows, const LevelShape& shape);
 
 /// Coarse coefficients: the sum of the finest open areas over the face, over the distance of the coarse
 /// centres; on the faces of the cells of the boxes.
-template <class Coefficient>
-void derive_coefficients(const LevelOperator<Coefficient>& fine, const LevelShape& coarse,
-                         const Merging& merging, const BoxList& boxes, const FaceVector<float>& coefficients);
+template <class Operator>
+void derive_coefficients(const Operator& fine, const LevelShape& coarse, const Merging& merging,
+                         const BoxList& boxes, const FaceVector<float>& coefficients);
 
 /// Reaction of one level: a part in proportion to the volume, and exchange with what lies outside (walls).
 struct LevelReaction {

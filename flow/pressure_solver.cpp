@@ -42,9 +42,21 @@ struct PressureSolver::Parts {
   PressureSides sides;
   Multigrid multigrid;
   FluidRegions regions;
+  Field<unsigned char> group;  ///< of fluid regions, once there were several
   LevelOperator<OpenFraction> physical_operator;
   Field<float> search;
   bool has_operator = false;
+
+  /// Coarse levels for each group of regions.
+  void part_regions() {
+    const int groups = regions.number_of_groups();
+    if (groups > 1 && !group.is_allocated())
+      group = Field<unsigned char>("pressure_group", multigrid.finest_operator().shape.layout);
+    if (groups > 1)
+      multigrid.set_groups(regions.write_groups(group), group);
+    else
+      multigrid.join_groups();
+  }
 };
 
 PressureSolver::PressureSolver(const Grid& grid, const PressureSides& sides) : parts_(new Parts) {
@@ -83,14 +95,18 @@ void PressureSolver::set_open_fractions(const FaceVector<OpenFraction>& open, co
   parts_->physical_operator =
       LevelOperator<OpenFraction>(parts_->multigrid.finest_operator().shape, open, weights);
   parts_->regions.find(parts_->multigrid.finest_operator());
+  parts_->part_regions();
   parts_->search.fill(0);
   parts_->has_operator = true;
 }
 
 void PressureSolver::update_open_fractions(const std::vector<Box>& changed) {
   require_state(parts_->has_operator, "update_open_fractions: set_open_fractions has not been called");
-  parts_->multigrid.update(changed);
   parts_->regions.update(parts_->multigrid.finest_operator(), changed);
+  if (parts_->regions.number_of_groups() > 1 || parts_->multigrid.number_of_groups() > 1)
+    parts_->part_regions();
+  else
+    parts_->multigrid.update(changed);
 }
 
 SolveReport PressureSolver::solve(const Field<Real>& rhs, const Field<Real>& phi,
@@ -126,7 +142,8 @@ SolveReport PressureSolver::solve(const Field<Real>& rhs, const Field<Real>& phi
 }
 
 std::size_t PressureSolver::bytes() const {
-  return parts_->multigrid.bytes() + parts_->regions.bytes() + parts_->search.array().span() * sizeof(float);
+  return parts_->multigrid.bytes() + parts_->regions.bytes() + parts_->search.array().span() * sizeof(float) +
+         parts_->group.array().span();
 }
 
 }  // namespace peclet::flow

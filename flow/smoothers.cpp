@@ -241,6 +241,28 @@ Real prolong_and_smooth(const Operator& op, const SweepPlan& plan, const RowRang
   return prolong_and_smooth_by<1>(op, plan, rows, transfer, fields, coarse_solution);
 }
 
+template <class Operator>
+void smooth_from_zero(const Operator& op, const SweepPlan& plan, const RowRanges& rows,
+                      const LevelFields& fields) {
+  const float* const rhs = fields.rhs.array().data();
+  float* const solution = fields.solution.array().data();
+  float* const scratch = fields.scratch.array().data();
+  sweep("flow::smooth", plan, Stage{rows, FirstStep<Operator>{op, rhs, scratch, first_weight}},
+        Stage{rows, JacobiStep<Operator, Nothing>{op, rhs, scratch, solution, second_weight}},
+        Stage{rows, Residual<Operator>{op, rhs, solution, scratch}});
+}
+
+template <class Operator>
+Real smooth(const Operator& op, const SweepPlan& plan, const RowRanges& rows, const LevelFields& fields) {
+  const float* const rhs = fields.rhs.array().data();
+  float* const solution = fields.solution.array().data();
+  float* const scratch = fields.scratch.array().data();
+  return sweep("flow::smooth", plan,
+               Stage{rows, JacobiStep<Operator, Nothing>{op, rhs, solution, scratch, first_weight}},
+               Stage{rows, JacobiStep<Operator, Total>{op, rhs, scratch, solution, second_weight}})
+      .sum;
+}
+
 Real dot(const Field<float>& a, const Field<float>& b, const RowRanges& rows, const SweepPlan& plan) {
   return sweep("flow::dot", plan, Stage{rows, Product{a.layout(), a.array().data(), b.array().data()}}).sum;
 }
@@ -261,5 +283,10 @@ template void smooth_and_restrict(const ReactiveOperator<float>&, const SweepPla
                                   const Transfer&, const LevelFields&, const Field<float>&);
 template Real prolong_and_smooth(const ReactiveOperator<float>&, const SweepPlan&, const RowRanges&,
                                  const Transfer&, const LevelFields&, const Field<float>&);
+
+template void smooth_from_zero(const LevelOperator<OpenFraction>&, const SweepPlan&, const RowRanges&,
+                               const LevelFields&);
+template Real smooth(const LevelOperator<OpenFraction>&, const SweepPlan&, const RowRanges&,
+                     const LevelFields&);
 
 }  // namespace peclet::flow

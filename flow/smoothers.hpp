@@ -35,6 +35,14 @@ Real prolong_and_smooth(const Operator& op, const SweepPlan& plan, const RowRang
                         const Transfer& transfer, const LevelFields& fields,
                         const Field<float>& coarse_solution);
 
+/// The same without the transfers: two steps from zero, which leave the residual in fields.scratch, and two
+/// steps that return solution . rhs.
+template <class Operator>
+void smooth_from_zero(const Operator& op, const SweepPlan& plan, const RowRanges& rows,
+                      const LevelFields& fields);
+template <class Operator>
+Real smooth(const Operator& op, const SweepPlan& plan, const RowRanges& rows, const LevelFields& fields);
+
 /// a . b over the rows.
 Real dot(const Field<float>& a, const Field<float>& b, const RowRanges& rows, const SweepPlan& plan);
 

@@ -78,6 +78,31 @@ TEST(FluidRegions, AreThoseOfAFlood) {
       }
 }
 
+TEST(FluidRegions, LargeOnesFormGroupsOfTheirOwn) {
+  const Int3 n{70, 20, 22};
+  // Slabs of 33, 1, 20 and 16 planes across x.
+  const auto slabs = [](int axis, int i, int, int) {
+    return axis == 0 && (i == 0 || i == 33 || i == 34 || i == 54) ? OpenFraction{0} : fully_open;
+  };
+  const auto open = make_faces(n, PressureSides(), slabs);
+  const LevelShape shape(n, PressureSides());
+  FluidRegions regions(shape);
+  regions.find(LevelOperator<OpenFraction>(shape, open, {1, 1, 1}));
+  EXPECT_EQ(regions.number_of_regions(), 4);
+  ASSERT_EQ(regions.number_of_groups(), 3);
+  const Field<unsigned char> group("group", shape.layout);
+  const std::vector<Box> boxes = regions.write_groups(group);
+  ASSERT_EQ(boxes.size(), 3U);
+  const int low[] = {0, 34, 54}, high[] = {34, 54, 70};
+  for (int g = 0; g < 3; ++g) {
+    EXPECT_EQ(boxes[g].low[0], low[g]);
+    EXPECT_EQ(boxes[g].high[0], high[g]);
+    EXPECT_EQ(boxes[g].extent(1), n[1]);
+    EXPECT_EQ(boxes[g].extent(2), n[2]);
+  }
+  for_cells(n, [&](int i, int j, int k) { EXPECT_EQ(group(i, j, k), (i >= 34) + (i >= 54)); });
+}
+
 TEST(FluidRegions, MeansVanishWhereNoFixedSideTouches) {
   const Int3 n{66, 11, 9};
   const PressureSides sides =

@@ -49,6 +49,32 @@ TEST(Multigrid, CycleIsSymmetricAndPositive) {
     }
 }
 
+TEST(Multigrid, CycleIsSymmetricAndKeepsGroupsApart) {
+  const Int3 n{37, 26, 28};
+  const int wall = 18;
+  const auto walls = [](int axis, int i, int, int) {
+    return axis == 0 && (i == 0 || i == wall) ? OpenFraction{0} : fully_open;
+  };
+  const auto open = make_faces(n, PressureSides(), walls);
+  const Field<unsigned char> group("group", Layout(n));
+  for_cells(n, [&](int i, int j, int k) { group(i, j, k) = i < wall; });
+  Multigrid multigrid(n, {1, 1, 1}, PressureSides());
+  multigrid.set_open_fractions(open, RowRanges(n));
+  multigrid.set_groups({Box{{wall, 0, 0}, n}, Box{{0, 0, 0}, {wall, n[1], n[2]}}}, group);
+  const Field<Real> a = random_field(n, 36), b = random_field(n, 37);
+  const Field<float> ma = apply(multigrid, open, a), mb = apply(multigrid, open, b);
+  const Real scale = std::sqrt(dot_of(ma, a) * dot_of(mb, b));
+  EXPECT_GT(dot_of(ma, a), 0);
+  EXPECT_NEAR(dot_of(ma, b), dot_of(mb, a), 1e-5 * scale);
+  for_cells(n, [&](int i, int j, int k) {
+    if (i < wall) a(i, j, k) = 0;
+  });
+  const Field<float> part = apply(multigrid, open, a);
+  for_cells(n, [&](int i, int j, int k) {
+    EXPECT_EQ(part(i, j, k), i < wall ? 0 : ma(i, j, k)) << i << " " << j << " " << k;
+  });
+}
+
 TEST(Multigrid, ReturnsTheProductOfCorrectionAndResidual) {
   const Int3 n{30, 26, 22};
   const auto open = make_faces(n, PressureSides(), all_open());

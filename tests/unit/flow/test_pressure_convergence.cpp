@@ -125,6 +125,69 @@ TEST(PressureConvergence, CopesWithDensePackings) {
   EXPECT_LE(report.iterations, 10);
 }
 
+/// Cells of each block are parted from all others.
+Faces boxes_apart(const Int3& size, const std::vector<Int3>& corners) {
+  const auto block = [=](const Int3& cell) {
+    for (std::size_t m = 0; m < corners.size(); ++m) {
+      bool inside = true;
+      for (int a = 0; a < 3; ++a) inside &= cell[a] >= corners[m][a] && cell[a] < corners[m][a] + size[a];
+      if (inside) return static_cast<int>(m);
+    }
+    return -1;
+  };
+  return [=](int axis, int i, int j, int k) {
+    Int3 low{i, j, k};
+    --low[axis];
+    return block(low) == block({i, j, k}) ? fully_open : OpenFraction{0};
+  };
+}
+
+TEST(PressureConvergence, NeedsFewIterationsInSeveralRegions) {
+  // Two chambers between walls of no thickness, and a closed block in one of them.
+  for (const Int3& n : {Int3{64, 64, 64}, Int3{63, 41, 58}, Int3{97, 33, 35}})
+    for (const int first : {0, 3, 11})
+      for (const int second : {n[0] / 2, n[0] / 2 + 5}) {
+        const Faces block = boxes_apart({9, n[1] / 2, n[2] / 3}, {{14, n[1] / 4, n[2] / 4}});
+        const Faces faces = [=](int axis, int i, int j, int k) {
+          return axis == 0 && (i == first || i == second) ? OpenFraction{0} : block(axis, i, j, k);
+        };
+        const SolveReport report = solve_random(n, {1, 1, 1}, PressureSides(), faces);
+        EXPECT_TRUE(report.converged);
+        EXPECT_LE(report.iterations, 8) << name_of(n) << " walls at " << first << " and " << second;
+      }
+}
+
+TEST(PressureConvergence, CopesWithMoreRegionsThanGroups) {
+  const Int3 n{60, 56, 61};
+  std::vector<Int3> corners;
+  for (int k = 0; k < 2; ++k)
+    for (int j = 0; j < 2; ++j)
+      for (int i = 0; i < 3; ++i) corners.push_back({3 + 19 * i, 5 + 25 * j, 7 + 27 * k});
+  const SolveReport report = solve_random(n, {1, 1, 1}, PressureSides(), boxes_apart({13, 15, 17}, corners));
+  EXPECT_TRUE(report.converged);
+  EXPECT_LE(report.iterations, 10);
+}
+
+TEST(PressureConvergence, FollowsRegionsThatJoinAndPart) {
+  const Int3 n{48, 40, 44};
+  const auto open = make_faces(n, PressureSides(), all_open());
+  PressureSolver solver(Grid{n, {1, 1, 1}, {0, 0, 0}}, PressureSides());
+  solver.set_open_fractions(open, RowRanges(n));
+  const Field<Real> rhs("rhs", Layout(n)), phi("phi", Layout(n));
+  for (const int wall : {21, 0, 13, 14, 0, 30}) {
+    const auto faces = [&](int axis, int i, int, int) {
+      return wall > 0 && axis == 0 && (i == 5 || i == wall) ? OpenFraction{0} : fully_open;
+    };
+    fill_faces(open, PressureSides(), faces);
+    solver.update_open_fractions({Box{{0, 0, 0}, n}});
+    Kokkos::deep_copy(rhs.array(), random_field(n, 23, 0.1).array());
+    phi.fill(0);
+    const SolveReport report = solver.solve(rhs, phi, PressureSettings());
+    EXPECT_TRUE(report.converged);
+    EXPECT_LE(report.iterations, 8) << wall;
+  }
+}
+
 TEST(PressureConvergence, CopesWithNarrowGaps) {
   // Two chambers joined by one face that is open by one part in 32768.
   const Int3 n{40, 32, 36};
