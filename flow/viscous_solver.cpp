@@ -14,7 +14,7 @@ namespace {
 /// Sweeps between two evaluations of the residual in double precision.
 constexpr int sweeps_per_cycle_limit = 40;
 /// Where more sweeps would be needed in all, multigrid is faster.
-constexpr int sweeps_limit = 100;
+constexpr int sweeps_limit = 190;
 /// Reduction that single-precision sweeps can deliver in one cycle.
 constexpr Real cycle_reduction_limit = 1e-5;
 
