@@ -46,6 +46,7 @@ class ImmersedBoundary {
   Real covered_points(int c) const;
   /// Rows and slits beside moving bodies depend on it.
   const WallFriction& friction() const { return friction_; }
+  bool has_slits() const { return slits_[0].count + slits_[1].count + slits_[2].count > 0; }
   bool has_moving_walls() const {
     return moving_rows_[0].count + moving_rows_[1].count + moving_rows_[2].count > 0;
   }
