@@ -82,7 +82,11 @@ CASES = (
     Case(
         "towed spheres with inertia",
         small=lambda: towed_with_inertia(1, 20, 5e-3)[0] + towed_with_inertia(20, 100, 5e-3)[0],
-        full=lambda curves: towed_and_at_rest(20, 300, 5e-3) + towed_and_at_rest(100, 600, 5e-3),
+        full=lambda curves: (
+            towed_with_inertia(1, 40, 5e-3)[0]
+            + towed_and_at_rest(20, 300, 5e-3)
+            + towed_and_at_rest(100, 600, 5e-3)
+        ),
     ),
     Case(
         "sphere in a closed cube",
