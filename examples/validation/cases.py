@@ -144,7 +144,7 @@ CASES = (
     Case(
         "settling in a wider tank, Re 20",
         small=None,
-        full=lambda curves: settling_in_wide_tank(20, 8, 16, 24, 0.03, 0.03),
+        full=lambda curves: settling_in_wide_tank(20, 8, 16, 24, 0.03, 0.04),
     ),
     Case(
         "settling in a wide tank, Re 80",
