@@ -1,7 +1,5 @@
 #pragma once
 // Uniform Cartesian grid and the memory layout that all fields on it share.
-#include <algorithm>
-
 #include "core/types.hpp"
 #include "core/vec3.hpp"
 
@@ -29,7 +27,9 @@ struct Grid {
   }
   KOKKOS_INLINE_FUNCTION Real extent(int axis) const { return cells[axis] * spacing[axis]; }
   KOKKOS_INLINE_FUNCTION Real cell_volume() const { return spacing[0] * spacing[1] * spacing[2]; }
-  Real smallest_spacing() const { return std::min({spacing[0], spacing[1], spacing[2]}); }
+  KOKKOS_INLINE_FUNCTION Real smallest_spacing() const {
+    return Kokkos::fmin(spacing[0], Kokkos::fmin(spacing[1], spacing[2]));
+  }
   Index number_of_cells() const { return static_cast<Index>(cells[0]) * cells[1] * cells[2]; }
 };
 

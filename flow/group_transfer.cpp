@@ -8,17 +8,11 @@ void restrict_group(const Field<unsigned char>& group, int own, const Merging& m
   const Layout layout = fine.layout();
   for_each_cell(
       "flow::restrict_group", coarse_rows, KOKKOS_LAMBDA(int i, int j, int k) {
-        const Int3 cell{i, j, k};
-        Int3 low, high;
-        for (int axis = 0; axis < 3; ++axis) {
-          const int end = merging.end_of_children(axis, cell[axis]), last = layout.cells[axis];
-          low[axis] = merging.first_child(axis, cell[axis]);
-          high[axis] = end < last ? end : last;
-        }
+        const Box box = merging.children({i, j, k}, layout.cells);
         float sum = 0;
-        for (int c = low[2]; c < high[2]; ++c)
-          for (int b = low[1]; b < high[1]; ++b)
-            for (Index n = layout(low[0], b, c); n < layout(high[0], b, c); ++n)
+        for (int c = box.low[2]; c < box.high[2]; ++c)
+          for (int b = box.low[1]; b < box.high[1]; ++b)
+            for (Index n = layout(box.low[0], b, c); n < layout(box.high[0], b, c); ++n)
               sum += group[n] == value ? fine[n] : 0;
         coarse(i, j, k) = sum;
       });

@@ -214,8 +214,7 @@ ImmersedBoundary::ImmersedBoundary(const Grid& grid, const DomainSides& sides)
   solid_.grid = grid;
   solid_.sdf = Field<Real>("flow::sdf", layout);
   solid_.owner = Field<int>("flow::owner", layout);
-  marks_ = Field<int>("flow::cell_marks", layout);
-  solid_.marks = marks_;
+  solid_.marks = Field<int>("flow::cell_marks", layout);
 }
 
 void ImmersedBoundary::build(Bodies& bodies, const Field<Real>& samples, const WallFriction& friction) {
@@ -261,14 +260,14 @@ void ImmersedBoundary::sample_fixed(Bodies& bodies) {
   }
   fill_mirrored_ghosts(solid_.sdf, sides_);
   fill_mirrored_ghosts(solid_.owner, sides_);
-  open_fixed_faces(FaceOpener(solid_, 0), open_, marks_);
+  open_fixed_faces(FaceOpener(solid_, 0), open_, solid_.marks);
   fill_open_ghosts(open_, solid_.sdf, sides_);
   rows_ = open_row_ranges(open_, grid_.cells);
   const CellList whole = CellList::of_grid(grid_.cells);
   CellList near;
   near.listed = Array<Int3>("flow::fixed_cells", static_cast<std::size_t>(whole.count));
-  find_near_cells(marks_, sides_, whole, near);
-  sort_near_cells(open_, open_, solid_.sdf, marks_, sides_, near);
+  find_near_cells(solid_.marks, sides_, whole, near);
+  sort_near_cells(open_, open_, solid_.sdf, solid_.marks, sides_, near);
   const Array<Index> scratch("flow::fixed_scratch", static_cast<std::size_t>(near.count));
   for (int c = 0; c < 3; ++c) {
     build_wall_rows(c, solid_, open_, sides_, near, scratch, fixed_rows_[c]);
@@ -320,15 +319,15 @@ void ImmersedBoundary::sample_moving() {
     fill_mirrored_ghosts(solid_.sdf, sides_, 1);
     fill_mirrored_ghosts(solid_.owner, sides_, 1);
   }
-  open_moving_faces(FaceOpener(solid_, friction_.area()), band_, open_, marks_);
+  open_moving_faces(FaceOpener(solid_, friction_.area()), band_, open_, solid_.marks);
   if (has_ghosts) fill_open_ghosts(open_, solid_.sdf, sides_);
-  find_near_cells(marks_, sides_, band_, near_);
-  sort_near_cells(open_, fixed_open_, solid_.sdf, marks_, sides_, near_);
-  number_near_cells(near_, marks_);
+  find_near_cells(solid_.marks, sides_, band_, near_);
+  sort_near_cells(open_, fixed_open_, solid_.sdf, solid_.marks, sides_, near_);
+  number_near_cells(near_, solid_.marks);
   const auto total = static_cast<std::size_t>(near_.count);
   if (scratch_.extent(0) < total) scratch_ = Array<Index>("flow::near_scratch", total + total / 4);
   for (int c = 0; c < 3; ++c) {
-    mark_superseded(marks_, band_mark_, fixed_rows_[c]);
+    mark_superseded(solid_.marks, band_mark_, fixed_rows_[c]);
     build_wall_rows(c, solid_, open_, sides_, near_, scratch_, moving_rows_[c]);
     std::swap(former_slits_[c], slits_[c]);
     build_slits(c, solid_, open_, friction_.area(), near_, scratch_, slits_[c]);
@@ -361,7 +360,7 @@ void ImmersedBoundary::refresh_face_velocity(Bodies& bodies) {
 void ImmersedBoundary::refresh_velocity(Bodies& bodies) {
   refresh_face_velocity(bodies);
   for (int c = 0; c < 3; ++c) refresh_wall_motion(c, solid_, friction_.viscosity, moving_rows_[c]);
-  refresh_cut_cells(solid_, open_, sides_, near_, marks_, cut_cells_);
+  refresh_cut_cells(solid_, open_, sides_, near_, solid_.marks, cut_cells_);
 }
 
 }  // namespace peclet::flow

@@ -63,7 +63,6 @@ class ImmersedBoundary {
   FaceVector<OpenFraction> open_, fixed_open_;
   Field<Real> fixed_sdf_;
   Field<int> fixed_owner_;
-  Field<int> marks_;
   RowRanges rows_;
   RegionList regions_;
   CellList band_, former_band_, near_;  // near_ is part of band_

@@ -48,16 +48,12 @@ KOKKOS_INLINE_FUNCTION int parts_of_face(const FaceVector<OpenFraction>& open, c
   const Layout& layout = open.x.layout();
   const Index p = layout(cell[0], cell[1], cell[2]);
   const OpenFraction fraction = open[axis][p];
-  if (is_fluid(fraction)) {
-    const bool is_row = touches_wall(open, sdf, sides, axis, cell[0], cell[1], cell[2]);
-    if (fraction == fully_open) return is_row ? cell_part::wall_row : 0;
-    const bool is_swept = !sides.is_side(axis, cell[axis], layout.cells) &&
-                          (is_cut_cell || is_cut(open, p - layout.stride(axis)));
-    return (is_row ? cell_part::wall_row : 0) | (is_swept ? cell_part::swept : 0);
-  }
-  if (sides.is_side(axis, cell[axis], layout.cells)) return 0;
-  const bool is_swept = is_cut_cell || is_cut(open, p - layout.stride(axis));
-  return (is_slit(fraction) ? cell_part::slit : cell_part::closed) | (is_swept ? cell_part::swept : 0);
+  const bool is_row = is_fluid(fraction) && touches_wall(open, sdf, sides, axis, cell[0], cell[1], cell[2]);
+  int parts = is_row ? cell_part::wall_row : 0;
+  if (fraction == fully_open || sides.is_side(axis, cell[axis], layout.cells)) return parts;
+  if (is_cut_cell || is_cut(open, p - layout.stride(axis))) parts |= cell_part::swept;
+  if (!is_fluid(fraction)) parts |= is_slit(fraction) ? cell_part::slit : cell_part::closed;
+  return parts;
 }
 
 }  // namespace

@@ -69,17 +69,11 @@ void derive_reaction(const LevelShape& fine, const LevelReaction& fine_reaction,
   const Real resistance = 0.5 / size;
   for_each_cell(
       "flow::coarsen_reaction", boxes, KOKKOS_LAMBDA(int i, int j, int k) {
-        const Int3 cell{i, j, k};
-        Int3 low, high;
-        for (int axis = 0; axis < 3; ++axis) {
-          const int end = merging.end_of_children(axis, cell[axis]), n = fine_shape.cells[axis];
-          low[axis] = merging.first_child(axis, cell[axis]);
-          high[axis] = end < n ? end : n;
-        }
+        const Box box = merging.children({i, j, k}, fine_shape.cells);
         Real exchange = 0, volume = 0;
-        for (int c = low[2]; c < high[2]; ++c)
-          for (int b = low[1]; b < high[1]; ++b)
-            for (int a = low[0]; a < high[0]; ++a) {
+        for (int c = box.low[2]; c < box.high[2]; ++c)
+          for (int b = box.low[1]; b < box.high[1]; ++b)
+            for (int a = box.low[0]; a < box.high[0]; ++a) {
               const Real total = from.total(a, b, c);
               if (!(total > 0)) continue;
               const Real own = from.volume.data() ? from.volume(a, b, c) : from.finest_volume;

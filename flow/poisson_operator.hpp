@@ -29,6 +29,16 @@ struct Merging {
   KOKKOS_INLINE_FUNCTION int end_of_children(int axis, int cell) const {
     return ratio[axis] * (cell + 1) - shift[axis];
   }
+  /// The children of a coarse cell among this many cells.
+  KOKKOS_INLINE_FUNCTION Box children(const Int3& cell, const Int3& cells) const {
+    Box box;
+    for (int axis = 0; axis < 3; ++axis) {
+      const int end = end_of_children(axis, cell[axis]);
+      box.low[axis] = first_child(axis, cell[axis]);
+      box.high[axis] = end < cells[axis] ? end : cells[axis];
+    }
+    return box;
+  }
   KOKKOS_INLINE_FUNCTION int parent(int axis, int cell) const {
     return (cell + shift[axis]) >> (ratio[axis] - 1);
   }

@@ -75,8 +75,7 @@ KOKKOS_INLINE_FUNCTION Real least_distance(const SolidSampler& solid, int c, Ind
   if (steepness == 0) return smallest_wall_distance;
   const Real normal_speed = Kokkos::abs(dot(solid.geometry.velocity(body, x), gradient)) / steepness;
   if (normal_speed == 0) return smallest_wall_distance;
-  const Real3& spacing = solid.grid.spacing;
-  const Real reach = normal_speed * Kokkos::min(spacing[0], Kokkos::min(spacing[1], spacing[2]));
+  const Real reach = normal_speed * solid.grid.smallest_spacing();
   constexpr Real rise = smallest_moving_distance - smallest_wall_distance;
   return smallest_wall_distance + rise * reach / (reach + cell_reynolds_of_half_rise * viscosity);
 }

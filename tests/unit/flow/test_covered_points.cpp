@@ -47,18 +47,23 @@ Real sum_of_fluid(const std::vector<Real>& u, const std::vector<OpenFraction>& o
   return sum;
 }
 
+/// Moves the first body by shift and hands on what it covers of component c.
+void move_and_hand_on(BoundaryInTest& flow, int c, Vec3 shift, const Field<Real>& u,
+                      const Field<Real>& previous) {
+  CoveredPoints covered;
+  covered.remember(c, flow.boundary.moving_rows(c));
+  flow.bodies.set_pose(0, crosses_the_edge.center + shift, {});
+  flow.boundary.update(flow.bodies, Field<Real>("pressure", Layout(grid.cells)), {0.1, 1e-2});
+  covered.hand_on(c, flow.boundary.solid(), flow.boundary.open()[c], flow.bodies.count(), u, previous);
+}
+
 TEST(CoveredPoints, LoseNoMomentumBeyondThatOfTheirBody) {
   for (int c = 0; c < 3; ++c) {
     BoundaryInTest flow({crosses_the_edge, beside_it});
     const Field<Real> u = uneven_flow(0), previous = uneven_flow(0.5);
     const std::vector<OpenFraction> before = host_values(flow.boundary.open()[c]);
     const Real sums[2] = {sum_of_fluid(host_values(u), before), sum_of_fluid(host_values(previous), before)};
-    CoveredPoints covered;
-    covered.remember(c, flow.boundary.moving_rows(c));
-    flow.bodies.set_pose(0, crosses_the_edge.center + Vec3{0.21, -0.24, 0.33},
-                         {});  // through all three sides
-    flow.boundary.update(flow.bodies, Field<Real>("pressure", Layout(grid.cells)), {0.1, 1e-2});
-    covered.hand_on(c, flow.boundary.solid(), flow.boundary.open()[c], flow.bodies.count(), u, previous);
+    move_and_hand_on(flow, c, {0.21, -0.24, 0.33}, u, previous);  // through all three sides
     const std::vector<OpenFraction> now = host_values(flow.boundary.open()[c]);
     const Field<Real>* fields[2] = {&u, &previous};
     for (int n = 0; n < 2; ++n) {
@@ -73,11 +78,7 @@ TEST(CoveredPoints, LeaveAloneWhatIsNotBesideTheirBody) {
   BoundaryInTest flow({crosses_the_edge, beside_it});
   const Field<Real> u = uneven_flow(0), previous = uneven_flow(0.5);
   const std::vector<Real> before = host_values(u);
-  CoveredPoints covered;
-  covered.remember(0, flow.boundary.moving_rows(0));
-  flow.bodies.set_pose(0, crosses_the_edge.center + Vec3{0.3, 0, 0}, {});
-  flow.boundary.update(flow.bodies, Field<Real>("pressure", Layout(grid.cells)), {0.1, 1e-2});
-  covered.hand_on(0, flow.boundary.solid(), flow.boundary.open()[0], flow.bodies.count(), u, previous);
+  move_and_hand_on(flow, 0, {0.3, 0, 0}, u, previous);
   const std::vector<Real> after = host_values(u);
   std::size_t n = 0;
   int changed = 0;
@@ -97,10 +98,7 @@ TEST(CoveredPoints, ABodyThatStaysChangesNothing) {
   BoundaryInTest flow({crosses_the_edge, beside_it});
   const Field<Real> u = uneven_flow(0), previous = uneven_flow(0.5);
   const std::vector<Real> before = host_values(u);
-  CoveredPoints covered;
-  covered.remember(1, flow.boundary.moving_rows(1));
-  flow.boundary.update(flow.bodies, Field<Real>("pressure", Layout(grid.cells)), {0.1, 1e-2});
-  covered.hand_on(1, flow.boundary.solid(), flow.boundary.open()[1], flow.bodies.count(), u, previous);
+  move_and_hand_on(flow, 1, {}, u, previous);
   EXPECT_EQ(host_values(u), before);
 }
 
