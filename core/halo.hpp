@@ -23,23 +23,47 @@ inline Box ghost_layers(const Int3& cells, int axis, int width) {
   return layers;
 }
 
+namespace detail {
+
+template <int axis, class Body>
+void for_each_in_layers_along(const std::string& label, const Layout& layout, const Box& layers,
+                              const Body& body) {
+  // rows run across the layers: along x, or along y where the layers are those of x
+  const auto turned = [](const Int3& at) { return axis == 0 ? Int3{at[1], at[2], at[0]} : at; };
+  for_each_cell(
+      label, Box{turned(layers.low), turned(layers.high)}, KOKKOS_LAMBDA(int a, int b, int c) {
+        const Index first = axis == 0 ? layout(0, a, b) : (axis == 1 ? layout(a, 0, c) : layout(a, b, 0));
+        body(first, axis == 1 ? b : c);
+      });
+}
+
+}  // namespace detail
+
+/// body(first, depth) for each place of the layers along axis: first is the linear index of the first cell
+/// of the line along axis.
+template <class Body>
+void for_each_in_layers(const std::string& label, const Layout& layout, int axis, const Box& layers,
+                        const Body& body) {
+  if (axis == 0)
+    detail::for_each_in_layers_along<0>(label, layout, layers, body);
+  else if (axis == 1)
+    detail::for_each_in_layers_along<1>(label, layout, layers, body);
+  else
+    detail::for_each_in_layers_along<2>(label, layout, layers, body);
+}
+
 /// Fill the ghost layers beyond both sides of one periodic axis: layers.low[axis] to layers.high[axis] count
 /// depths from the side; along the other axes layers gives the cells (and ghosts) to treat. Cells along
 /// short axes (fewer cells than ghosts) repeat as often as needed.
 template <class T>
 void fill_periodic_layers(const Field<T>& field, int axis, const Box& layers) {
-  const int m = field.layout().cells[axis];
-  for_each_cell(
-      "core::fill_periodic_ghosts", layers, KOKKOS_LAMBDA(int i, int j, int k) {
-        const int depth = axis == 0 ? i : (axis == 1 ? j : k);  // 0 is the layer next to the cells
-        const int source_high = depth % m;
-        const int source_low = m - 1 - source_high;
-        const int ni = axis == 0, nj = axis == 1, nk = axis == 2;
-        const int bi = i * !ni, bj = j * !nj, bk = k * !nk;
-        field(bi + ni * (m + depth), bj + nj * (m + depth), bk + nk * (m + depth)) =
-            field(bi + ni * source_high, bj + nj * source_high, bk + nk * source_high);
-        field(bi - ni * (1 + depth), bj - nj * (1 + depth), bk - nk * (1 + depth)) =
-            field(bi + ni * source_low, bj + nj * source_low, bk + nk * source_low);
+  const int n = field.layout().cells[axis];
+  const Index step = field.layout().stride(axis);
+  for_each_in_layers(
+      "core::fill_periodic_ghosts", field.layout(), axis, layers, KOKKOS_LAMBDA(Index first, int depth) {
+        const int inside = depth < n ? depth : depth % n;
+        field[first - (1 + depth) * step] = field[first + (n - 1 - inside) * step];
+        field[first + (n + depth) * step] = field[first + inside * step];
       });
 }
 
@@ -48,10 +72,8 @@ template <class T>
 void fill_reflected_layers(const Field<T>& field, int axis, const Box& layers, T low_sign, T high_sign) {
   const int n = field.layout().cells[axis];
   const Index step = field.layout().stride(axis);
-  for_each_cell(
-      "core::fill_reflected_ghosts", layers, KOKKOS_LAMBDA(int i, int j, int k) {
-        const int depth = axis == 0 ? i : (axis == 1 ? j : k);
-        const Index first = field.layout()(i, j, k) - depth * step;
+  for_each_in_layers(
+      "core::fill_reflected_ghosts", field.layout(), axis, layers, KOKKOS_LAMBDA(Index first, int depth) {
         const int inside = depth < n ? depth : n - 1;
         field[first - (1 + depth) * step] = static_cast<T>(low_sign * field[first + inside * step]);
         field[first + (n + depth) * step] =

@@ -26,6 +26,7 @@ struct Body {
   KOKKOS_INLINE_FUNCTION Vec3 velocity_from_arm(Vec3 arm) const {
     return twist.linear + cross(twist.angular, arm);
   }
+  KOKKOS_INLINE_FUNCTION bool spins() const { return dot(twist.angular, twist.angular) > 0; }
 };
 
 struct Period {

@@ -9,9 +9,9 @@ namespace {
 
 /// Cells around a body in which it can change a distance, a face, or a stencil.
 constexpr int region_margin = 3;
-/// The same as region_margin, but as a distance in spacings: wall rows reach 1.5 cells along each axis,
-/// narrow gaps 2.
-constexpr Real band_width = 3;
+/// The same as a distance in spacings: stencils see corners of faces 1.5 cells away along two axes and half
+/// a cell along the third, which makes 2.2; narrow gaps reach 2.
+constexpr Real band_width = 2.5;
 
 /// Cells around a body in which it can change a face: one that it touches, or one beside a narrow gap.
 int surface_margin(const Grid& grid) {

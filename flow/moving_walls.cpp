@@ -40,13 +40,16 @@ KOKKOS_INLINE_FUNCTION Real swept_flux(const SolidSampler& solid, const FaceVect
   const NarrowGap gap = narrow_gap(solid, axis, i, j, k);
   const Real whole = wall_velocity(solid, gap, body, axis, x);
   if (fraction == 0) return whole;
+  const Real part = fraction * open_fraction_unit;
+  const bool is_uniform = gap.share == 0 && (body < 0 || !solid.geometry.bodies(body).spins());
+  if (is_uniform) return whole - part * whole;
   const FaceOpening face = face_opening(solid, axis, i, j, k, body, body);
   const int s = (axis + 1) % 3, t = (axis + 2) % 3;
   const Real lever = face.open > 0 ? -(1 - face.open) / face.open : 0.0;  // of the open part's middle
   Vec3 middle = x;
   middle[s] += lever * face.closed_s * solid.grid.spacing[s];
   middle[t] += lever * face.closed_t * solid.grid.spacing[t];
-  return whole - fraction * open_fraction_unit * wall_velocity(solid, gap, body, axis, middle);
+  return whole - part * wall_velocity(solid, gap, body, axis, middle);
 }
 
 }  // namespace

@@ -183,9 +183,10 @@ void Solver::set_pose(int body, Vec3 translation, Quaternion rotation) {
 }
 
 void Solver::set_motion(int body, const Twist& twist, const std::optional<Vec3>& center) {
+  const BodyMotion before = bodies_.motion(body);
   bodies_.set_twist(body, twist);
   if (center) bodies_.pin_center(body, *center);
-  wall_velocity_stale_ = true;
+  if (!(bodies_.motion(body) == before)) wall_velocity_stale_ = true;
 }
 
 void Solver::promote_moved_bodies() {

@@ -64,8 +64,15 @@ KOKKOS_INLINE_FUNCTION Vec3 distance_gradient(const SolidSampler& solid, int c, 
   return gradient;
 }
 
+KOKKOS_INLINE_FUNCTION Real nearest_wall(const WallRows& rows, Index row) {
+  Real nearest = 1;
+  for (int d = 0; d < WallRows::directions; ++d)
+    nearest = Kokkos::min(nearest, static_cast<Real>(rows.distance(row, d)));
+  return nearest;
+}
+
 /// Smallest distance to walls, in spacings, that enters the stencil of the point at x, the low face p across
-/// axis c.
+/// axis c; never more than smallest_moving_distance.
 KOKKOS_INLINE_FUNCTION Real least_distance(const SolidSampler& solid, int c, Index p, Vec3 x,
                                            Real viscosity) {
   const int body = nearest_owner(solid, c, p, x);
@@ -141,7 +148,10 @@ void refresh_wall_motion(int c, const SolidSampler& solid, Real viscosity, const
         const Index p = target.face(row);
         const Int3 cell = cell_of(layout, p);
         const Vec3 x = sampler.grid.face_center(c, cell[0], cell[1], cell[2]);
-        set_weights(target, row, least_distance(sampler, c, p, x, viscosity));
+        const Real least = nearest_wall(target, row) < smallest_moving_distance
+                               ? least_distance(sampler, c, p, x, viscosity)
+                               : smallest_moving_distance;
+        set_weights(target, row, least);
         const NarrowGap gap = narrow_gap(sampler, c, cell[0], cell[1], cell[2]);
         Real sum = 0;
         for (int d = 0; d < WallRows::directions; ++d) {
