@@ -136,7 +136,7 @@ KOKKOS_INLINE_FUNCTION T superquadric(T x, T y, T z, Vec3 r, Real e) {
 
 /// Distance of the leaf with this code at (x, y, z).
 template <class T>
-KOKKOS_INLINE_FUNCTION T leaf_distance(Opcode opcode, T x, T y, T z, const Parameters& p) {
+PECLET_CALLED_FUNCTION T leaf_distance(Opcode opcode, T x, T y, T z, const Parameters& p) {
   switch (opcode) {
     case Opcode::Sphere:
       return sphere(x, y, z, p[0]);

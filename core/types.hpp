@@ -4,6 +4,13 @@
 #include <cstddef>
 #include <cstdint>
 
+/// Of a large function for kernels: nvcc copies all others into each of their calls, in hours for this one.
+#ifdef __CUDACC__
+#define PECLET_CALLED_FUNCTION __noinline__ KOKKOS_FUNCTION
+#else
+#define PECLET_CALLED_FUNCTION inline
+#endif
+
 namespace peclet {
 
 using Real = double;
