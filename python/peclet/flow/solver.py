@@ -159,7 +159,7 @@ class Solver(Parameters, Boundaries, Geometry, Fields, Scalars, Instruments):
         core = self._core
         limit = self._courant_limit()
         if core.courant_number_bound > limit and core.courant_number > limit:
-            _warn_courant(core.courant_number, limit)
+            _warn_courant(limit)
         if not self.velocity_report.converged:
             _warn_cap("velocity", core.velocity_iteration_limit, core.velocity_tolerance)
         if not self.pressure_report.converged:
@@ -283,10 +283,12 @@ def _warn_cap(solve: str, cap: int, tolerance: float, report: str | None = None)
     )
 
 
-def _warn_courant(number: float, limit: float) -> None:
+def _warn_courant(limit: float) -> None:
+    # Without the number: as above.
     warnings.warn(
-        f"step(): advection is explicit and the Courant number {number:.2g} exceeds the limit {limit:g} of "
-        "the scheme; reduce dt, use step_adaptive(), or set_implicit_advection() if there are no scalars",
+        f"step(): advection is explicit and the Courant number exceeds the limit {limit:g} of the scheme; "
+        "courant_number has it. Reduce dt, use step_adaptive(), or set_implicit_advection() if there are no "
+        "scalars",
         RuntimeWarning,
         stacklevel=3,
     )
