@@ -53,6 +53,7 @@ class ImmersedBoundary {
   std::size_t bytes() const;
 
  private:
+  void forget_moving();
   void sample_fixed(Bodies& bodies);
   void sample_moving();
   bool reaches_sides() const;

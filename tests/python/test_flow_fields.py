@@ -197,6 +197,23 @@ def test_a_run_goes_on_from_a_checkpoint_bit_by_bit():
     assert np.array_equal(second.hydro_force_torque_reaction(), whole.hydro_force_torque_reaction())
 
 
+def test_a_body_set_in_motion_after_the_checkpoint_rests_again():
+    forces = []
+    for moves in (False, True):
+        solver = box_with(flow.Solver(12, 12, 12), ((6.2, 6.0, 6.0), 2.5))
+        solver.set_body_force(1e-3, 0, 0)
+        solver.step()
+        at_rest = solver.checkpoint()
+        if moves:
+            solver.set_instance_transform(0, [6.9, 6.0, 6.0])
+            solver.set_instance_motion(0, [0.1, 0, 0])
+            solver.step()
+            solver.restore(at_rest)
+        solver.step()
+        forces.append(solver.hydro_force_torque_reaction())
+    np.testing.assert_array_equal(*forces)
+
+
 def test_a_checkpoint_that_does_not_fit_is_refused():
     solver = stream_past_a_moving_sphere()
     advance(solver, range(1, 3))
