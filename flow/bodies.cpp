@@ -65,12 +65,14 @@ void Bodies::set_domain(const Periodicity& domain) {
   geometry_.box = period_of(grid_, domain);
   geometry_.images = geometry_.box;
   for (int a = 0; a < 3; ++a) geometry_.images.axis[a] = geometry_.images.axis[a] && periodic_images_;
-  for (Body& body : bodies_) compare_with_periods(body);
+  for (Body& body : bodies_) place(body);
   stale_ = true;
 }
 
-void Bodies::compare_with_periods(Body& body) const {
+void Bodies::place(Body& body) const {
   bound(body);
+  body.middle = body.pose.translation + 0.5 * (body.low + body.high);
+  body.lever = geometry_.box.nearest(body.middle - body.center);
   body.wide = body.meets_images = false;
   for (int a = 0; a < 3; ++a) {
     if (!geometry_.images.axis[a]) continue;
@@ -89,12 +91,26 @@ bool Bodies::any_moves() const {
   return false;
 }
 
+Real Bodies::largest_courant_rate() const {
+  Real largest = 0;
+  for (const Body& body : bodies_)
+    for (int corner = 0; corner < 8; ++corner) {
+      Vec3 arm = body.lever;
+      for (int a = 0; a < 3; ++a) arm[a] += (corner >> a & 1 ? 0.5 : -0.5) * (body.high[a] - body.low[a]);
+      const Vec3 velocity = body.twist.linear + cross(body.twist.angular, arm);
+      Real rate = 0;
+      for (int a = 0; a < 3; ++a) rate += std::abs(velocity[a]) / grid_.spacing[a];
+      largest = std::max(largest, rate);
+    }
+  return largest;
+}
+
 void Bodies::set_pose(int b, Vec3 translation, Quaternion rotation) {
   const auto n = static_cast<std::size_t>(b);
   bodies_[n].pose.translation = translation;
   bodies_[n].pose.rotation = normalized(rotation);
   if (!pinned_[n]) bodies_[n].center = translation;
-  compare_with_periods(bodies_[n]);
+  place(bodies_[n]);
   stale_ = true;
 }
 
@@ -118,8 +134,10 @@ void Bodies::set_twist(int b, Twist twist) {
 }
 
 void Bodies::pin_center(int b, Vec3 center) {
-  bodies_[static_cast<std::size_t>(b)].center = center;
+  Body& body = bodies_[static_cast<std::size_t>(b)];
+  body.center = center;
   pinned_[static_cast<std::size_t>(b)] = true;
+  place(body);
   stale_ = true;
 }
 
@@ -150,7 +168,7 @@ void Bodies::restore(int b, const BodyMotion& motion) {
   body.center = motion.center;
   body.dynamic = motion.dynamic;
   pinned_[n] = motion.pinned;
-  compare_with_periods(body);
+  place(body);
   stale_ = true;
 }
 

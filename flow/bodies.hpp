@@ -16,16 +16,13 @@ struct Body {
   Pose pose;
   Twist twist;
   Vec3 center;                 // of rotation
+  Vec3 middle, lever;          // of the bounds, and from the centre (its nearest image) to there
   Vec3 local_low, local_high;  // bounds in the frame of the root
   Vec3 low, high;              // bounds along the axes of the box, relative to the translation
   bool wide = false;           // reaches beyond half a period: images other than the nearest matter
   bool meets_images = false;   // longer than a period
   bool dynamic = false;        // re-sampled at every geometry update
 
-  /// Velocity of the rigid motion at x: U + Omega x (x - center), nearest image of the arm.
-  KOKKOS_INLINE_FUNCTION Vec3 velocity_from_arm(Vec3 arm) const {
-    return twist.linear + cross(twist.angular, arm);
-  }
   KOKKOS_INLINE_FUNCTION bool spins() const { return dot(twist.angular, twist.angular) > 0; }
 };
 
@@ -96,10 +93,16 @@ struct BodyGeometry {
     return true;
   }
 
-  /// Velocity of the surface of body b at x.
-  KOKKOS_INLINE_FUNCTION Vec3 velocity(int b, Vec3 x) const {
+  /// From the centre of rotation of body b to its point at x: that of the image of the body nearest to x.
+  KOKKOS_INLINE_FUNCTION Vec3 lever(int b, Vec3 x) const {
     const Body& body = bodies(b);
-    return body.velocity_from_arm(box.nearest(x - body.center));
+    return body.lever + box.nearest(x - body.middle);
+  }
+
+  /// Velocity of the surface of body b at x: U + Omega x lever.
+  KOKKOS_INLINE_FUNCTION Vec3 velocity(int b, Vec3 x) const {
+    const Twist& twist = bodies(b).twist;
+    return twist.linear + cross(twist.angular, lever(b, x));
   }
 
   KOKKOS_INLINE_FUNCTION Real distance_with_images(const Body& body, Vec3 x, Real nearest_image) const {
@@ -150,6 +153,8 @@ class Bodies {
   bool center_pinned(int b) const { return pinned_[static_cast<std::size_t>(b)]; }
   bool moves(int b) const;
   bool any_moves() const;
+  /// Largest of sum |u_a| / h_a over the corners of the bounds of all bodies.
+  Real largest_courant_rate() const;
 
   void set_pose(int b, Vec3 translation, Quaternion rotation);
   /// Largest displacement of a point of body b on the way to a pose.
@@ -170,7 +175,8 @@ class Bodies {
   Box region(int b, int margin) const;
 
  private:
-  void compare_with_periods(Body& body) const;
+  /// What follows from pose and centre.
+  void place(Body& body) const;
 
   Grid grid_;
   BodyGeometry geometry_;

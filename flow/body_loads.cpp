@@ -19,11 +19,22 @@ struct LoadAdder {
     const int bin = first_bin(owner);
     bins.add(chunk, bin + kind + c, force);
     if (owner < 0) return;
-    const Vec3 arm = geometry.box.nearest(x - geometry.bodies(owner).center);
     Vec3 along;
     along[c] = force;
-    const Vec3 torque = cross(arm, along);
-    for (int a = 0; a < 3; ++a) bins.add(chunk, bin + Torque + a, torque[a]);
+    add_torque(chunk, owner, cross(geometry.lever(owner, x), along));
+  }
+  KOKKOS_INLINE_FUNCTION void add_torque(int chunk, int owner, Vec3 torque) const {
+    for (int a = 0; a < 3; ++a) bins.add(chunk, first_bin(owner) + Torque + a, torque[a]);
+  }
+  /// Torque of the transposed stress mu n x Omega: r x (n x Omega) = n (r . Omega) - Omega (r . n). The wall
+  /// at x has this area across axis, positive where the fluid is on its high side.
+  KOKKOS_INLINE_FUNCTION void add_spin_resistance(int chunk, int owner, int axis, Real area, Real viscosity,
+                                                  Vec3 x) const {
+    if (owner < 0 || !geometry.bodies(owner).spins()) return;
+    const Vec3 spin = geometry.bodies(owner).twist.angular, arm = geometry.lever(owner, x);
+    Vec3 normal;
+    normal[axis] = area;
+    add_torque(chunk, owner, viscosity * (dot(arm, spin) * normal - arm[axis] * area * spin));
   }
 };
 
@@ -58,9 +69,10 @@ void add_wall_tractions(int c, const MomentumTerms& terms, const SolidSampler& s
             const Index q = d % 2 ? p - layout.stride(a) : p + layout.stride(a);
             laplacian += (w.weight(row, d ^ 1) - 1) * (v[q] + t.implicit_weight * e[q] - here);
           }
-          const Real viscous =
-              -t.density * t.kinematic_viscosity * volume * inverse[a] * inverse[a] * laplacian;
-          loads.add(chunk, owner, Viscous, c, viscous, wall);
+          const Real viscosity = t.density * t.kinematic_viscosity, area = volume * inverse[a];
+          loads.add(chunk, owner, Viscous, c, -viscosity * area * inverse[a] * laplacian, wall);
+          // the points of each of the three components see the whole wall
+          loads.add_spin_resistance(chunk, owner, a, (d % 2 ? -area : area) / 3, viscosity, wall);
         }
       });
 }
@@ -118,7 +130,7 @@ void LoadCollector::add_pressure(int c, const SolidSampler& solid, const WallRow
   add_wall_pressure(c, solid, moving_rows, pressure, divergence, implicit_viscosity, adder, sums_);
 }
 
-std::vector<BodyLoad> LoadCollector::finish(const std::vector<Vec3>& spin_resistance) {
+std::vector<BodyLoad> LoadCollector::finish() {
   const std::vector<Real> sums = sums_.totals();
   std::vector<BodyLoad> loads(static_cast<std::size_t>(bodies_));
   for (std::size_t b = 0; b < loads.size(); ++b) {
@@ -127,7 +139,7 @@ std::vector<BodyLoad> LoadCollector::finish(const std::vector<Vec3>& spin_resist
     load.viscous_force = triple(sums, first + Viscous);
     load.pressure_force = triple(sums, first + Pressure);
     load.force = load.viscous_force + load.pressure_force;
-    load.torque = triple(sums, first + Torque) - spin_resistance[b];
+    load.torque = triple(sums, first + Torque);
   }
   return loads;
 }

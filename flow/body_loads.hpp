@@ -6,8 +6,10 @@
 // and is given to the body that owns the wall. Advection hands nothing to walls, see advective_leak(). So
 //   sum of forces = f N - rho / dt sum (u_new - u)   over the N fluid points, to rounding.
 //
-// Torques are moments of the same terms about the centre of rotation, plus the transposed part of the viscous
-// stress, which on a rigid no-slip wall integrates to -2 mu V Omega for a body of volume V.
+// Torques are moments of the same terms about the centre of rotation, plus that of the transposed part of the
+// viscous stress: mu n x Omega on a rigid no-slip wall with the normal n into the fluid. Its integral is
+// -2 mu V Omega for a body of volume V in the fluid, and +2 mu V Omega for a cavity full of fluid. It has no
+// resultant force on either.
 #include <vector>
 
 #include "core/scatter_sum.hpp"
@@ -31,8 +33,8 @@ class LoadCollector {
   /// filled.
   void add_pressure(int c, const SolidSampler& solid, const WallRows& fixed_rows, const WallRows& moving_rows,
                     const Field<Real>& pressure, const Field<Real>& divergence, Real implicit_viscosity);
-  /// One load per body. spin_resistance[b] = 2 mu V Omega of body b.
-  std::vector<BodyLoad> finish(const std::vector<Vec3>& spin_resistance);
+  /// One load per body.
+  std::vector<BodyLoad> finish();
 
  private:
   ScatterSum sums_;

@@ -1,7 +1,5 @@
 #include "flow/diagnostics.hpp"
 
-#include <cmath>
-
 namespace peclet::flow {
 
 Real largest_component(const RowRanges& rows, const FaceVector<Real>& velocity) {
@@ -63,17 +61,6 @@ Real divergence_in_open_cells(const RowRanges& rows, const FaceVector<OpenFracti
         const int any = o.x[p] + o.x[p + 1] + o.y[p] + o.y[y] + o.z[p] + o.z[z];
         return any ? Kokkos::abs(div[p]) : 0.0;
       });
-}
-
-Real body_volume(const BodyGeometry& geometry, const Grid& grid, int b, const Box& region) {
-  const BodyGeometry bodies = geometry;
-  const Real h = std::cbrt(grid.cell_volume());
-  return grid.cell_volume() * sum_cells(
-                                  "flow::body_volume", RowRanges(region), KOKKOS_LAMBDA(int i, int j, int k) {
-                                    const Real fraction =
-                                        0.5 - bodies.distance(b, grid.cell_center(i, j, k)) / h;
-                                    return fraction < 0 ? 0.0 : (fraction > 1 ? 1.0 : fraction);
-                                  });
 }
 
 Real count_fluid_points(const RowRanges& rows, const Field<OpenFraction>& open) {

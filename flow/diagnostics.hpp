@@ -24,9 +24,6 @@ Real sum_of_change(const RowRanges& rows, const Field<OpenFraction>& open, const
 Real divergence_in_open_cells(const RowRanges& rows, const FaceVector<OpenFraction>& open,
                               const Field<Real>& divergence);
 
-/// Volume of the solid of body b, second order: cells near the surface count by their distance to it.
-Real body_volume(const BodyGeometry& geometry, const Grid& grid, int b, const Box& region);
-
 /// Number of fluid points of one component.
 Real count_fluid_points(const RowRanges& rows, const Field<OpenFraction>& open);
 

@@ -221,9 +221,7 @@ void ImmersedBoundary::build(Bodies& bodies, const Field<Real>& samples, const W
   solid_.samples = samples;
   friction_ = friction;
   sample_fixed(bodies);
-  regions_.clear();
-  surfaces_.clear();
-  band_.count = former_band_.count = near_.count = 0;
+  forget_moving();
   bool any_dynamic = false;
   for (int b = 0; b < bodies.count(); ++b) any_dynamic = any_dynamic || bodies[b].dynamic;
   if (any_dynamic) {
@@ -238,6 +236,18 @@ void ImmersedBoundary::build(Bodies& bodies, const Field<Real>& samples, const W
   }
   update(bodies, Field<Real>(), friction);
   changed_ = {Box{{0, 0, 0}, grid_.cells}};
+}
+
+void ImmersedBoundary::forget_moving() {
+  regions_.clear();
+  surfaces_.clear();
+  band_.count = former_band_.count = near_.count = 0;
+  for (int c = 0; c < 3; ++c) {
+    moving_rows_[c] = WallRows();
+    slits_[c] = former_slits_[c] = Slits();
+    body_faces_[c] = BodyFaces();
+  }
+  cut_cells_ = CutCells();
 }
 
 void ImmersedBoundary::sample_fixed(Bodies& bodies) {
@@ -317,7 +327,7 @@ void ImmersedBoundary::sample_moving() {
   restore_fixed(solid_, fixed, open_, band_mark_, former_band_);
   if (has_ghosts) {
     fill_mirrored_ghosts(solid_.sdf, sides_, 1);
-    fill_mirrored_ghosts(solid_.owner, sides_, 1);
+    fill_mirrored_ghosts(solid_.owner, sides_);  // narrow gaps look two cells far
   }
   open_moving_faces(FaceOpener(solid_, friction_.area()), band_, open_, solid_.marks);
   if (has_ghosts) fill_open_ghosts(open_, solid_.sdf, sides_);

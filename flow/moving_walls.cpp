@@ -114,6 +114,17 @@ KOKKOS_INLINE_FUNCTION Real swept_by_wall(const CutCells& cells, int mark, int a
   return n < 0 ? 0.0 : cells.swept(3 * static_cast<Index>(n) + axis);
 }
 
+/// Velocity with which a moving body that covers the centre of this cell leaves through a side of the box.
+KOKKOS_INLINE_FUNCTION Real swept_through_side(const SolidSampler& solid, int axis, const Int3& cell,
+                                               int high) {
+  const Index p = solid.sdf.layout()(cell[0], cell[1], cell[2]);
+  const int body = solid.owner[p];
+  if (solid.sdf[p] >= 0 || body < 0) return 0;
+  Vec3 x = solid.grid.cell_center(cell[0], cell[1], cell[2]);
+  x[axis] += (high - 0.5) * solid.grid.spacing[axis];
+  return solid.geometry.velocity(body, x)[axis];
+}
+
 void sweep_faces(const SolidSampler& solid, const FaceVector<OpenFraction>& open, const CellList& near,
                  const CutCells& cells) {
   const CutCells target = cells;
@@ -138,6 +149,7 @@ void refresh_cut_cells(const SolidSampler& solid, const FaceVector<OpenFraction>
   const Grid grid = solid.grid;
   const FaceVector<OpenFraction> fraction = open;
   const Field<int> mark = marks;
+  const SolidSampler sampler = solid;
   for_each(
       "flow::refresh_cut_cells", cells.count, KOKKOS_LAMBDA(Index n) {
         const Layout& layout = mark.layout();
@@ -147,12 +159,12 @@ void refresh_cut_cells(const SolidSampler& solid, const FaceVector<OpenFraction>
         for (int a = 0; a < 3; ++a) {
           const Index next = p + layout.stride(a);
           const Index owner = cell[a] + 1 < grid.cells[a] ? next : next - grid.cells[a] * layout.stride(a);
-          const Real low = fraction[a][p] < fully_open && !box.is_side(a, cell[a], grid.cells)
-                               ? swept_by_wall(target, mark[p], a)
-                               : 0.0;
-          const Real high = fraction[a][next] < fully_open && !box.is_side(a, cell[a] + 1, grid.cells)
-                                ? swept_by_wall(target, mark[owner], a)
-                                : 0.0;
+          const Real low = box.is_side(a, cell[a], grid.cells) ? swept_through_side(sampler, a, cell, 0)
+                           : fraction[a][p] < fully_open       ? swept_by_wall(target, mark[p], a)
+                                                               : 0.0;
+          const Real high = box.is_side(a, cell[a] + 1, grid.cells) ? swept_through_side(sampler, a, cell, 1)
+                            : fraction[a][next] < fully_open        ? swept_by_wall(target, mark[owner], a)
+                                                                    : 0.0;
           flux += (high - low) / grid.spacing[a];
         }
         target.wall_flux(n) = flux;

@@ -233,17 +233,13 @@ void Solver::project_velocity(Real velocity_scale, Real rotational_weight) {
   fill_pressure_ghosts(divergence_, sides_.pressure_sides(), 1);
   {
     const Stopwatch watch(times_.loads);
-    std::vector<Vec3> spin_resistance(static_cast<std::size_t>(bodies_.count()));
-    for (int b = 0; b < bodies_.count(); ++b) {
-      const Vec3 spin = bodies_[b].twist.angular;
-      if (dot(spin, spin) == 0) continue;
-      const Real volume = body_volume(bodies_.geometry(), grid_, b, bodies_.region(b, 1));
-      spin_resistance[static_cast<std::size_t>(b)] = 2 * settings_.viscosity * volume * spin;
-    }
     for (int c = 0; c < 3; ++c)
       load_collector_.add_pressure(c, boundary_.solid(), boundary_.fixed_rows(c), boundary_.moving_rows(c),
                                    pressure_, divergence_, update.implicit_viscosity);
-    loads_ = load_collector_.finish(spin_resistance);
+    loads_ = load_collector_.finish();
+    for (const BodyLoad& load : loads_)
+      require_state(std::isfinite(dot(load.force, load.force) + dot(load.torque, load.torque)),
+                    "step(): a load on a body is not finite; the time step may be too small or too large");
   }
 }
 

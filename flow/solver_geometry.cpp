@@ -9,6 +9,7 @@ void Solver::set_scene(const Scene& scene, bool periodic_images) {
   bodies_ = Bodies(scene, grid_, periodic_images, sides_.periodicity());
   requested_poses_.assign(static_cast<std::size_t>(bodies_.count()), std::nullopt);
   loads_.clear();
+  for (int n = 0; n < scalars_.count(); ++n) scalars_[n].given.clear();
   geometry_stale_ = true;
   built_ = false;
 }

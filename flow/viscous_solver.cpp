@@ -207,11 +207,16 @@ Spectrum bound_spectrum(const ViscousSystem& system) {
   return {0.5 * (low + high), 0.5 * (high - low)};
 }
 
-/// Sweeps needed by Chebyshev iteration for a reduction: 1 / T_m(middle / half width) <= reduction.
+/// Sweeps needed by Chebyshev iteration for a reduction: 1 / T_m(middle / half width) <= reduction in each
+/// cycle of m sweeps.
 int chebyshev_sweeps(const Spectrum& spectrum, Real reduction) {
   if (spectrum.half_width <= 0) return 1;
   const Real per_sweep = std::acosh(spectrum.middle / spectrum.half_width);
-  return std::max(1, static_cast<int>(std::ceil(std::acosh(1 / reduction) / per_sweep)));
+  Real sweeps = std::acosh(1 / reduction) / per_sweep;
+  if (sweeps > sweeps_per_cycle_limit)
+    sweeps = sweeps_per_cycle_limit * std::log(1 / reduction) /
+             std::log(std::cosh(sweeps_per_cycle_limit * per_sweep));
+  return std::max(1, static_cast<int>(std::ceil(std::min(sweeps, 1e9))));
 }
 
 /// Weight of sweep m of n: inverse of a root of T_n on the spectrum, in an order that keeps intermediate

@@ -262,6 +262,7 @@ void define_sides(nb::class_<Solver>& solver) {
           },
           "axis"_a, "high"_a)
       .def_prop_ro("courant_number", &Solver::courant_number)
+      .def_prop_ro("body_courant_rate", [](const Solver& s) { return s.bodies().largest_courant_rate(); })
       .def_prop_ro("courant_number_bound", &Solver::courant_number_bound);
 }
 

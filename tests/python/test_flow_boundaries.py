@@ -231,6 +231,30 @@ def test_a_body_and_a_stream_through_open_sides_move_together():
         assert np.abs(solver.hydro_force_torque_reaction()).max() < 1e-8
 
 
+@pytest.mark.parametrize("towards", [1, -1])
+@pytest.mark.parametrize("side", ["outflow", "wall", "slip"])
+def test_a_body_leaves_through_a_side_without_squeezing_the_fluid(side, towards):
+    solver = flow.Solver(12, 12, 12)
+    ends = ("-x", "+x")[::towards]
+    solver.set_domain_bc(ends[0], "wall" if side == "outflow" else "outflow")
+    solver.set_domain_bc(ends[1], side)
+    for face in ("-y", "+y"):
+        solver.set_domain_bc(face, "slip")
+    solver.set_mu(0.5)
+    solver.set_dt(0.25)
+    place, speed = np.array([5.5 + 2.7 * towards, 5.4, 5.3]), 0.4 * towards
+    scene = geom.SceneBuilder()
+    scene.add_instance(scene.add_leaf("sphere", [2.6]), place, lin_vel=[speed, 0, 0])
+    solver.set_scene(*scene.encode())
+    solver.set_solid_from_scene()
+    while abs(place[0] - 5.5) < 9:
+        place[0] += 0.25 * speed
+        solver.set_instance_transform(0, place)
+        solver.step()
+        assert max(np.abs(solver.get_field(name)).max() for name in "uvw") < 2.5 * 0.4
+    assert np.abs(solver.hydro_force_torque_reaction()).max() == 0  # it is gone
+
+
 def test_changing_a_velocity_keeps_the_flow_and_changing_a_type_keeps_it_too():
     solver = closed_box()
     solver.set_domain_bc("+y", "wall", [1, 0, 0])
@@ -284,6 +308,18 @@ def test_adaptive_steps_meet_their_target():
     for name, value in (("cfl_target", 0.0), ("cfl_target", np.nan), ("dt_max", -1.0)):
         with pytest.raises(ValueError, match=name):
             solver.step_adaptive(**{name: value})
+
+
+def test_a_step_for_bodies_about_to_move_is_short():
+    solver = flow.Solver((12, 12, 12), extent=(0.6, 1.2, 1.2))
+    solver.set_dt(100.0)
+    scene = geom.SceneBuilder()
+    ball = scene.add_leaf("sphere", [0.2])
+    scene.add_instance(ball, [0.3, 0.6, 0.6], lin_vel=[0.4, 0, 0], ang_vel=[0, 0, 0.5])
+    solver.set_scene(*scene.encode(), periodic=True)
+    solver.set_solid_from_scene()
+    rate = (0.4 + 0.5 * 0.2) / 0.05 + 0.5 * 0.2 / 0.1  # at a corner of the bounds
+    assert solver.step_adaptive() == pytest.approx(0.4 / rate)
 
 
 def test_a_large_courant_number_warns():

@@ -281,6 +281,48 @@ def test_a_body_across_the_edge_is_the_same_body():
     )
 
 
+def test_a_narrow_gap_across_the_edge_is_the_same_gap():
+    states = []
+    for shift in (0, 8):
+        solver = flow.Solver(N, N, N)
+        solver.set_dt(0.2)
+        solver.set_mu(0.05)
+        solver.set_pressure_tolerance(1e-10)
+        solver.set_velocity_residual_tolerance(1e-10)
+        box_with(
+            solver,
+            ((4.0 + shift, 6.5, 6.5), 2.0, (0.1, 0.1, 0)),
+            ((8.5 + shift, 6.75, 6.5), 2.0, (0, -0.1, 0)),
+        )
+        solver.step()
+        states.append([np.roll(solver.get_field(name), -shift, axis=0) for name in "uvw"])
+    np.testing.assert_allclose(states[0], states[1], atol=1e-10)
+
+
+def test_a_body_half_a_period_from_its_centre_of_rotation_stays_rigid():
+    solver = flow.Solver(N, N, N)
+    box_with(solver, ((3.0, 8.0, 8.0), 2.5))
+    solver.set_instance_motion(0, (0, 0, 0), (0, 0, 0.02), (11.2, 8.0, 8.0))
+    solver.step()
+    inside = solver.diagnostics.field_view("v")[1:6, 8, 8]
+    nearest_image = np.arange(1, 6)[1:4] - (11.2 - N)
+    np.testing.assert_allclose(inside[1:4], 0.02 * nearest_image, atol=1e-12)
+
+
+@pytest.mark.parametrize("left", [(), (((4.1, 9.2, 8.3), 2.4),)], ids=["nothing", "a body at rest"])
+def test_a_moving_body_that_is_taken_away_leaves_no_trace(left):
+    used, fresh = flow.Solver(N, N, N), flow.Solver(N, N, N)
+    box_with(used, ((8.2, 8.0, 8.0), 2.5, (0.1, 0, 0)))
+    used.step()
+    for solver in (used, fresh):
+        solver.set_body_force(1e-3, 0, 0)
+        box_with(solver, *left)
+        for _ in range(2):
+            solver.step()
+    for name in FIELDS:
+        np.testing.assert_array_equal(used.get_field(name), fresh.get_field(name))
+
+
 def test_turning_the_axes_turns_the_flow():
     """Cyclic exchange of x, y and z, with a different size along each."""
     shape, center, force = (12, 16, 20), (5.3, 7.1, 9.8), (1e-3, 2e-3, -1e-3)

@@ -28,6 +28,7 @@ _COURANT_LIMIT = {"sou": 0.25, "koren": 0.5, "central": 0.5}
 _COURANT_LIMIT_OF_SCALARS = 0.5
 # Targets of step_adaptive: where advection is explicit, and where it is implicit.
 _COURANT_TARGET, _IMPLICIT_COURANT_TARGET = 0.4, 4.0
+_LARGEST_MOVE = 0.5  # of a body in a step of step_adaptive(), in cells
 
 
 class Solver(Parameters, Boundaries, Geometry, Fields, Scalars, Instruments):
@@ -177,9 +178,10 @@ class Solver(Parameters, Boundaries, Geometry, Fields, Scalars, Instruments):
         """Advance by a time step chosen from the velocity, and return it.
 
         dt becomes cfl_target (at most 0.8 of the limit, see courant_number) over the largest of
-        sum |u_a| / h_a, at most dt_max and at most twice the last one. With a fluid at rest, the present dt
-        is kept if dt_max is infinite. cfl_target is 0.4 unless given, 4 with implicit advection without
-        scalars. capillary_cfl is accepted from scripts: there is no surface tension here.
+        sum |u_a| / h_a, at most dt_max and at most twice the last one; bodies move by half a cell at most.
+        While nothing moves, the present dt is kept if dt_max is infinite. cfl_target is 0.4 unless given, 4
+        with implicit advection without scalars. capillary_cfl is accepted from scripts: there is no surface
+        tension here.
         """
         if cfl_target is None:
             unlimited = self.implicit_advection and self._courant_limit() == math.inf
@@ -189,8 +191,11 @@ class Solver(Parameters, Boundaries, Geometry, Fields, Scalars, Instruments):
         if dt_max != math.inf:
             _checks.positive(dt_max, "dt_max")
         target = min(target, 0.8 * self._courant_limit())
-        rate = self._core.courant_number / self.dt
-        wanted = target / rate if rate > 0 else (self.dt if dt_max == math.inf else dt_max)
+        rate = max(
+            self._core.courant_number / self.dt / target,
+            self._core.body_courant_rate / min(target, _LARGEST_MOVE),
+        )
+        wanted = 1 / rate if rate > 0 else (self.dt if dt_max == math.inf else dt_max)
         if self.number_of_steps > 0:
             wanted = min(wanted, 2 * self.dt)
         self.set_dt(min(wanted, dt_max))
