@@ -338,6 +338,23 @@ def test_bodies_have_mass_volume_and_inertia(values):
         Body(*values)
 
 
+def test_no_body_has_one_moment_beyond_the_sum_of_the_others():
+    with pytest.raises(ValueError, match="inertia"):
+        Body(0, 1.0, 1.0, (1.0, 1.0, 2.1))
+    Body(0, 1.0, 1.0, (1.0, 1.0, 2.0))  # a disk without thickness
+
+
+def test_solver_and_particles_stay_those_of_the_simulation():
+    simulation = build()
+    simulation.flow.set_dt(0.5)
+    with pytest.raises(RuntimeError, match=r"flow\.dt"):
+        simulation.step()
+    simulation.flow.set_dt(1.0)
+    simulation.contacts.set_positions(np.zeros((2, 3)))
+    with pytest.raises(RuntimeError, match="particles"):
+        simulation.step()
+
+
 def test_rotation_to_body_axes_is_undone_by_its_inverse():
     rng = np.random.default_rng(1)
     q = rng.normal(size=(5, 4))

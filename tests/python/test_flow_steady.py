@@ -95,3 +95,16 @@ def test_a_slow_drift_is_not_taken_for_the_end():
 def test_bad_arguments_are_named(error, name, options):
     with pytest.raises(error, match=name):
         flow.march_to_steady(channel(), **{"monitor": mean_velocity} | options)
+
+
+@pytest.mark.parametrize("dt", [0.1, 1.0])
+def test_the_viscous_solve_meets_its_tolerance_all_the_way_to_the_steady_state(dt):
+    solver = flow.Solver((32, 32, 2), extent=(1, 1, 0.1))
+    x, y, z = np.meshgrid(*solver.cell_centers(), indexing="ij")
+    solver.set_solid(0.4 - np.hypot(x - 0.5, y - 0.5) + 0 * z)
+    solver.set_mu(1.0)
+    solver.set_dt(dt)
+    solver.set_body_force(0, 0, 1.0)
+    for _ in range(15):
+        solver.step()
+        assert solver.velocity_report.converged

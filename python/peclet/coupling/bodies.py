@@ -28,8 +28,14 @@ class Body:
         _checks.integer(self.instance, "instance", low=0)
         _checks.positive(self.mass, "mass")
         _checks.positive(self.volume, "volume")
-        for axis, moment in enumerate(_checks.vector(self.inertia, "inertia")):
+        moments = _checks.vector(self.inertia, "inertia")
+        for axis, moment in enumerate(moments):
             _checks.positive(moment, f"inertia[{axis}]")
+        if 2 * max(moments) > (1 + 1e-9) * sum(moments):
+            raise ValueError(
+                "inertia: expected moments of which none exceeds the sum of the others, as for every body, "
+                f"found {tuple(self.inertia)}"
+            )
 
     @classmethod
     def sphere(cls, instance: int, *, radius: float, density: float) -> Body:

@@ -99,6 +99,16 @@ class CoupledSimulation:
         if count != len(instances):
             raise ValueError(f"contacts: expected {len(instances)} particles, one per body, found {count}")
 
+    def _require_unchanged(self) -> None:
+        if self._flow.dt != self._time_step:
+            raise RuntimeError(
+                f"step(): expected flow.dt to stay at the time step of the simulation, {self._time_step:g}, "
+                f"found {self._flow.dt:g}"
+            )
+        count = self._contacts.num_particles()
+        if count != len(self._bodies):
+            raise RuntimeError(f"step(): expected {len(self._bodies)} particles, one per body, found {count}")
+
     flow = property(lambda self: self._flow, doc="The flow solver.")
     contacts = property(lambda self: self._contacts, doc="The contact simulation.")
     bodies = property(lambda self: self._bodies, doc="The bodies that the fluid moves.")
@@ -116,7 +126,11 @@ class CoupledSimulation:
         return self._history.arrays()
 
     def step(self) -> None:
-        """Advance fluid and bodies by one time step."""
+        """Advance fluid and bodies by one time step.
+
+        Raises RuntimeError if flow.dt or the number of particles differs from that of the simulation.
+        """
+        self._require_unchanged()
         self._place_bodies()
         self._flow.rebuild_geometry()
         self._flow.step()
