@@ -324,12 +324,12 @@ std::vector<Box> FluidRegions::write_groups(const Field<unsigned char>& group) c
   return boxes;
 }
 
-void FluidRegions::remove_means(const Field<Real>& rhs) const {
+void FluidRegions::remove_means(const Field<Real>& field) const {
   const Index rows = row_offset_.extent(0) - 1;
   Kokkos::deep_copy(mean_, 0);
-  sum_over_regions(masks(), rows, rhs, mean_);
+  sum_over_regions(masks(), rows, field, mean_);
   divide_sums(number_, cells_, fixed_, mean_);
-  subtract_means(masks(), rows, mean_, rhs);
+  subtract_means(masks(), rows, mean_, field);
 }
 
 std::size_t FluidRegions::bytes() const {

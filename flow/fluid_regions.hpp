@@ -96,8 +96,8 @@ class FluidRegions {
   int number_of_groups() const { return groups_; }
   /// Writes the group of every cell with an open face; returns the box around each group.
   std::vector<Box> write_groups(const Field<unsigned char>& group) const;
-  /// Subtracts from rhs its mean over each region that no Fixed side touches.
-  void remove_means(const Field<Real>& rhs) const;
+  /// Subtracts from a field its mean over each region that no Fixed side touches.
+  void remove_means(const Field<Real>& field) const;
   std::size_t bytes() const;
 
  private:

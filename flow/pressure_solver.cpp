@@ -137,6 +137,8 @@ SolveReport PressureSolver::solve(const Field<Real>& rhs, const Field<Real>& phi
   }
   const Real norm = std::sqrt(norms.squares);
   report = conjugate_gradient(equation, multigrid, parts_->search, norm, std::sqrt(cells) / norm, settings);
+  // a region that walls cut off keeps the mean pressure that it had
+  if (regions.number_of_regions() > 1) regions.remove_means(phi);
   fill_pressure_ghosts(phi, parts_->sides);
   return report;
 }
