@@ -75,6 +75,10 @@ void Bodies::place(Body& body) const {
   body.lever = geometry_.box.nearest(body.middle - body.center);
   body.wide = body.meets_images = false;
   for (int a = 0; a < 3; ++a) {
+    const Real low = body.pose.translation[a] + body.low[a] - grid_.origin[a];
+    const Real high = body.pose.translation[a] + body.high[a] - grid_.origin[a];
+    body.is_cut[a][0] = low < -grid_.spacing[a];
+    body.is_cut[a][1] = high > grid_.extent(a) + grid_.spacing[a];
     if (!geometry_.images.axis[a]) continue;
     // a band around the surface must see the true distance through the nearest image alone
     const Real reach = std::max(-body.low[a], body.high[a]) + 4 * grid_.spacing[a];

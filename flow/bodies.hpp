@@ -22,6 +22,7 @@ struct Body {
   bool wide = false;           // reaches beyond half a period: images other than the nearest matter
   bool meets_images = false;   // longer than a period
   bool dynamic = false;        // re-sampled at every geometry update
+  bool is_cut[3][2] = {};      // reaches further than a cell beyond this side of the box: more than a touch
 
   KOKKOS_INLINE_FUNCTION bool spins() const { return dot(twist.angular, twist.angular) > 0; }
 };

@@ -103,6 +103,27 @@ void add_wall_pressure(int c, const SolidSampler& solid, const WallRows& rows, c
       });
 }
 
+/// may_be_superseded: contacts of fixed bodies, which a moving band lists again.
+void add_contacts(int c, const SolidSampler& solid, const ContactCells& contacts, bool may_be_superseded,
+                  const SurroundingPressure& surrounding, const LoadAdder& adder, const ScatterSum& sums) {
+  const ContactCells cells = contacts;
+  const SurroundingPressure around = surrounding;
+  const Field<int> mark = solid.marks;
+  const LoadAdder loads = adder;
+  const Grid grid = solid.grid;
+  const Real area = grid.cell_volume() / grid.spacing[c];
+  for_each_scattered(
+      "flow::add_contact_pressure", contacts.count, sums, KOKKOS_LAMBDA(Index n, int chunk) {
+        const Index p = cells.cell(n);
+        if (may_be_superseded && mark[p] & cell_mark::in_band) return;
+        const Int3 cell = cell_of(mark.layout(), p);
+        const Real force = area * around.at(cell);
+        const Vec3 x = grid.cell_center(cell[0], cell[1], cell[2]);
+        loads.add(chunk, cells.low(n), Pressure, c, -force, x);
+        loads.add(chunk, cells.high(n), Pressure, c, force, x);
+      });
+}
+
 Vec3 triple(const std::vector<Real>& sums, std::size_t first) {
   return {sums[first], sums[first + 1], sums[first + 2]};
 }
@@ -128,6 +149,14 @@ void LoadCollector::add_pressure(int c, const SolidSampler& solid, const WallRow
   const LoadAdder adder{sums_.bins(), solid.geometry, bodies_};
   add_wall_pressure(c, solid, fixed_rows, pressure, divergence, implicit_viscosity, adder, sums_);
   add_wall_pressure(c, solid, moving_rows, pressure, divergence, implicit_viscosity, adder, sums_);
+}
+
+void LoadCollector::add_contact_pressure(int c, const SolidSampler& solid, const ContactCells& fixed_contacts,
+                                         const ContactCells& moving_contacts,
+                                         const SurroundingPressure& surrounding) {
+  const LoadAdder adder{sums_.bins(), solid.geometry, bodies_};
+  add_contacts(c, solid, fixed_contacts, true, surrounding, adder, sums_);
+  add_contacts(c, solid, moving_contacts, false, surrounding, adder, sums_);
 }
 
 std::vector<BodyLoad> LoadCollector::finish() {

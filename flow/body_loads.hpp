@@ -3,7 +3,8 @@
 // it. Each term that links two fluid points cancels in the sum over the fluid; what remains is, per wall row,
 //   viscous    the wall part of nu L (v + theta e), which acts at the wall,
 //   pressure   (p at the wall cell) on faces whose neighbour along their own axis is closed,
-// and is given to the body that owns the wall. Advection hands nothing to walls, see advective_leak(). So
+// and is given to the body that owns the wall. In contact cells the pressure around them pushes two bodies
+// apart. Advection hands nothing to walls, see advective_leak(). So
 //   sum of forces = f N - rho / dt sum (u_new - u)   over the N fluid points, to rounding.
 //
 // Torques are moments of the same terms about the centre of rotation, plus that of the transposed part of the
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "core/scatter_sum.hpp"
+#include "flow/contact_cells.hpp"
 #include "flow/momentum.hpp"
 
 namespace peclet::flow {
@@ -33,6 +35,8 @@ class LoadCollector {
   /// filled.
   void add_pressure(int c, const SolidSampler& solid, const WallRows& fixed_rows, const WallRows& moving_rows,
                     const Field<Real>& pressure, const Field<Real>& divergence, Real implicit_viscosity);
+  void add_contact_pressure(int c, const SolidSampler& solid, const ContactCells& fixed_contacts,
+                            const ContactCells& moving_contacts, const SurroundingPressure& surrounding);
   /// One load per body.
   std::vector<BodyLoad> finish();
 

@@ -102,9 +102,12 @@ void mark_superseded(const Field<int>& marks, int band_mark, const WallRows& row
       KOKKOS_LAMBDA(Index n) { target.superseded(n) = (mark[target.face(n)] & band_mark) != 0; });
 }
 
-/// Pressure of closed cells beside open ones := mean over the open neighbours.
-void extrapolate_pressure(const FaceVector<OpenFraction>& open, const DomainSides& sides,
-                          const CellList& near, const Field<Real>& pressure) {
+/// Pressure of closed cells beside open ones := mean of p_q + f . (x - x_q) over the open neighbours, where f
+/// is the gradient at hydrostatic equilibrium.
+void extrapolate_pressure(const Grid& grid, const FaceVector<OpenFraction>& open, const DomainSides& sides,
+                          const CellList& near, const Real3& hydrostatic_force, const Field<Real>& pressure) {
+  const Real3 fall{hydrostatic_force[0] * grid.spacing[0], hydrostatic_force[1] * grid.spacing[1],
+                   hydrostatic_force[2] * grid.spacing[2]};
   const CellList candidates = near;
   const FaceVector<OpenFraction> fraction = open;
   const Field<Real> p = pressure;
@@ -128,7 +131,7 @@ void extrapolate_pressure(const FaceVector<OpenFraction>& open, const DomainSide
           q[a] = q[a] < 0 ? q[a] + cells[a] : (q[a] >= cells[a] ? q[a] - cells[a] : q[a]);
           const Index neighbor = layout(q[0], q[1], q[2]);
           if (!is_open_cell(fraction, neighbor)) continue;
-          sum += p[neighbor];
+          sum += p[neighbor] + (d % 2 ? -fall[a] : fall[a]);
           ++count;
         }
         if (count > 0) p[n] = sum / count;
@@ -246,6 +249,7 @@ void ImmersedBoundary::forget_moving() {
     moving_rows_[c] = WallRows();
     slits_[c] = former_slits_[c] = Slits();
     body_faces_[c] = BodyFaces();
+    moving_contacts_[c] = ContactCells();
   }
   cut_cells_ = CutCells();
 }
@@ -281,13 +285,15 @@ void ImmersedBoundary::sample_fixed(Bodies& bodies) {
   const Array<Index> scratch("flow::fixed_scratch", static_cast<std::size_t>(near.count));
   for (int c = 0; c < 3; ++c) {
     build_wall_rows(c, solid_, open_, sides_, near, scratch, fixed_rows_[c]);
+    build_contact_cells(c, solid_, open_, sides_, near, scratch, fixed_contacts_[c]);
     refresh_wall_motion(c, solid_, friction_.viscosity, fixed_rows_[c]);
   }
 }
 
-void ImmersedBoundary::update(Bodies& bodies, const Field<Real>& pressure, const WallFriction& friction) {
+void ImmersedBoundary::update(Bodies& bodies, const Field<Real>& pressure, const WallFriction& friction,
+                              const Real3& hydrostatic_force) {
   friction_ = friction;
-  if (pressure.is_allocated()) extrapolate_pressure(open_, sides_, near_, pressure);
+  if (pressure.is_allocated()) extrapolate_pressure(grid_, open_, sides_, near_, hydrostatic_force, pressure);
   const bool had_regions = !regions_.empty();
   const int margin = surface_margin(grid_);
   std::vector<Box> boxes, surfaces;
@@ -322,7 +328,7 @@ void ImmersedBoundary::sample_moving() {
   const FixedGeometry fixed{fixed_sdf_, fixed_owner_, fixed_open_, fixed_is_empty_};
   for (CellList* list : {&band_, &former_band_}) list->reserve(regions_.number_of_cells());
   std::swap(band_, former_band_);
-  band_mark_ ^= cell_mark::in_even_band | cell_mark::in_odd_band;
+  band_mark_ ^= cell_mark::in_band;
   sample_band(solid_, fixed, regions_, band_mark_, band_);
   restore_fixed(solid_, fixed, open_, band_mark_, former_band_);
   if (has_ghosts) {
@@ -342,6 +348,7 @@ void ImmersedBoundary::sample_moving() {
     std::swap(former_slits_[c], slits_[c]);
     build_slits(c, solid_, open_, friction_.area(), near_, scratch_, slits_[c]);
     build_body_faces(c, solid_, near_, scratch_, body_faces_[c]);
+    build_contact_cells(c, solid_, open_, sides_, near_, scratch_, moving_contacts_[c]);
   }
   build_cut_cells(open_.x.layout(), near_, scratch_, cut_cells_);
 }
@@ -355,7 +362,9 @@ std::size_t ImmersedBoundary::bytes() const {
   Index total = cells * static_cast<Index>(3 * sizeof(OpenFraction) + sizeof(Real) + 2 * sizeof(int));
   if (fixed_sdf_.is_allocated())
     total += cells * static_cast<Index>(3 * sizeof(OpenFraction) + sizeof(Real) + sizeof(int));
-  for (int c = 0; c < 3; ++c) total += fixed_rows_[c].bytes() + moving_rows_[c].bytes() + slits_[c].bytes();
+  for (int c = 0; c < 3; ++c)
+    total += fixed_rows_[c].bytes() + moving_rows_[c].bytes() + slits_[c].bytes() +
+             fixed_contacts_[c].bytes() + moving_contacts_[c].bytes();
   return static_cast<std::size_t>(total);
 }
 

@@ -3,6 +3,7 @@
 // Fixed bodies are sampled once; an update touches only the cells around moving ones, where they were and
 // where they are.
 #include "flow/bodies.hpp"
+#include "flow/contact_cells.hpp"
 #include "flow/domain_sides.hpp"
 #include "flow/moving_walls.hpp"
 #include "flow/near_cells.hpp"
@@ -23,7 +24,8 @@ class ImmersedBoundary {
   void build(Bodies& bodies, const Field<Real>& samples, const WallFriction& friction);
   /// Re-sample the moving bodies. Before the geometry changes, the pressure of closed cells beside open ones
   /// is extrapolated into them, so that freshly uncovered cells start from it.
-  void update(Bodies& bodies, const Field<Real>& pressure, const WallFriction& friction);
+  void update(Bodies& bodies, const Field<Real>& pressure, const WallFriction& friction,
+              const Real3& hydrostatic_force = {0, 0, 0});
   /// Only the velocities of the bodies changed.
   void refresh_velocity(Bodies& bodies);
   /// The same for closed faces and slits alone, before a geometry update.
@@ -37,6 +39,9 @@ class ImmersedBoundary {
   const Slits& former_slits(int c) const { return former_slits_[c]; }
   const BodyFaces& body_faces(int c) const { return body_faces_[c]; }
   const CutCells& cut_cells() const { return cut_cells_; }
+  /// Those of the fixed solid alone; where moving bodies are near, they are among moving_contacts() too.
+  const ContactCells& fixed_contacts(int c) const { return fixed_contacts_[c]; }
+  const ContactCells& moving_contacts(int c) const { return moving_contacts_[c]; }
   const SolidSampler& solid() const { return solid_; }
   /// Rows of cells that are not solid for good.
   const RowRanges& rows() const { return rows_; }
@@ -77,6 +82,7 @@ class ImmersedBoundary {
   Slits slits_[3], former_slits_[3];
   BodyFaces body_faces_[3];
   CutCells cut_cells_;
+  ContactCells fixed_contacts_[3], moving_contacts_[3];
 };
 
 }  // namespace peclet::flow

@@ -4,11 +4,14 @@
 //   (u* - u) / dt = -A(v) - grad p / rho + f / rho + nu L (v + theta e).
 // v + theta e is second order in time at the middle of the step for every theta; stiff modes are damped to
 // 1/3 per step by theta = 9/16 [AscherRuuthWetton1995, modified Crank-Nicolson]. The first step, which has no
-// past, is a step of Euler's method: r = 0, theta = 1.
+// past, is a step of Euler's method: r = 0, theta = 1. Where the time step grows more than twofold at once, a
+// share (2 / r)^2 of the extrapolation is left, r becomes 4 / r, and theta moves towards 1 alike: with the
+// whole of it, time steps that alternate by more than a factor of 8 are unstable.
 #include "core/field.hpp"
 #include "core/sweep.hpp"
 #include "flow/advection_schemes.hpp"
 #include "flow/settings.hpp"
+#include "flow/time_weights.hpp"
 #include "flow/wall_rows.hpp"
 
 namespace peclet::flow {

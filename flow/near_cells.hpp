@@ -51,6 +51,7 @@ inline constexpr int touched_by_fixed = 2;  // the same with the fixed solid alo
 inline constexpr int between_bodies = 4;  // one of its low faces can be in a narrow gap beside a moving body
 inline constexpr int in_even_band = 8;    // around a moving body, for every other update
 inline constexpr int in_odd_band = 16;
+inline constexpr int in_band = in_even_band | in_odd_band;
 inline constexpr int first_number = 32;
 }  // namespace cell_mark
 

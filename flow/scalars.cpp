@@ -8,12 +8,10 @@
 #include "core/field_transfer.hpp"
 #include "core/halo.hpp"
 #include "flow/scalar_steady.hpp"
+#include "flow/time_weights.hpp"
 
 namespace peclet::flow {
 namespace {
-
-/// Implicit weight of diffusion from the second step on, see flow/momentum.hpp.
-constexpr Real second_order_weight = 9.0 / 16.0;
 
 /// The walls of the scalar for kernels, as ScalarGeometry wants them.
 const Array<ScalarWall>& walls_of(Scalar& scalar, int bodies) {
@@ -197,8 +195,9 @@ ScalarTerms Scalars::terms(const Scalar& scalar, const ScalarFlow& flow, Real ti
   terms.scheme = scalar.settings.scheme;
   terms.time_step = time_step;
   if (scalar.previous_time_step > 0) {
-    terms.step_ratio = time_step / scalar.previous_time_step;
-    terms.implicit_weight = second_order_weight;
+    const Real ratio = time_step / scalar.previous_time_step, share = share_of_past(ratio);
+    terms.step_ratio = share * ratio;
+    terms.implicit_weight = 1 - share * (1 - second_order_weight);
   }
   terms.diffusivity = scalar.settings.diffusivity;
   terms.source = scalar.settings.source;

@@ -11,8 +11,6 @@
 namespace peclet::flow {
 namespace {
 
-/// Implicit weight of viscosity from the second step on, see flow/momentum.hpp.
-constexpr Real second_order_weight = 9.0 / 16.0;
 /// Share of the rotational pressure update that a flow bears at any viscosity: all of it in a closed box,
 /// less with Outflow sides, and the less the more axes have them, because of the edges where they meet
 /// [GuermondMinevShen2006]. Slits are openings too, whose flow viscosity does not see: with the whole term
@@ -33,6 +31,9 @@ constexpr Real divergence_limit = 3e-9;
 
 /// Residual of the pressure that balances the body force at the start.
 constexpr Real rest_tolerance = 1e-12;
+/// Velocity that counts as rest, relative to what the body force would give the fluid in a step if no
+/// pressure balanced it: the tolerance of the viscous solve then is above what rounding leaves of the two.
+constexpr Real rest_velocity = 1e-6;
 
 }  // namespace
 
@@ -63,8 +64,9 @@ MomentumTerms Solver::momentum_terms() const {
   terms.density = settings_.density;
   terms.kinematic_viscosity = settings_.viscosity / settings_.density;
   if (previous_time_step_ > 0) {
-    const Real share = extrapolation_share();
-    terms.step_ratio = share * settings_.time_step / previous_time_step_;
+    const Real ratio = settings_.time_step / previous_time_step_;
+    const Real share = extrapolation_share() * share_of_past(ratio);
+    terms.step_ratio = share * ratio;
     terms.implicit_weight = 1 - share * (1 - second_order_weight);
   }
   for (int c = 0; c < 3; ++c) terms.acceleration[c] = settings_.body_force[c] / settings_.density;
@@ -128,13 +130,19 @@ void Solver::advance() {
 }
 
 /// The pressure that starts a flow: what of the body force is a gradient accelerates nothing, so that a
-/// closed tank stays at rest. psi from  div(o grad psi) = div(o f),  p += psi.
+/// closed tank stays at rest. psi from  div(o grad psi) = div(o f),  p += psi. Later the same for what the
+/// force changes by along axes with sides; along periodic ones it drives the flow.
 void Solver::balance_body_force() {
-  if (!force_unbalanced_) return;
+  Real3 force{0, 0, 0};
+  for (int a = 0; a < 3; ++a)
+    if (force_unbalanced_ || !sides_.is_periodic(a))
+      force[a] = settings_.body_force[a] - (force_unbalanced_ ? 0 : balanced_force_[a]);
   force_unbalanced_ = false;
+  balanced_force_ = settings_.body_force;
+  if (force[0] == 0 && force[1] == 0 && force[2] == 0) return;
   const Stopwatch watch(times_.pressure);
   const Real largest =
-      compute_force_divergence(grid_, boundary_.rows(), boundary_.open(), settings_.body_force, divergence_);
+      compute_force_divergence(grid_, boundary_.rows(), boundary_.open(), force, divergence_);
   if (largest == 0) return;
   PressureSettings limits;
   limits.max_iterations = settings_.pressure_iteration_limit;
@@ -142,6 +150,14 @@ void Solver::balance_body_force() {
   pressure_solver_.solve(divergence_, potential_, limits);
   add_potential(boundary_.rows(), potential_, pressure_);
   potential_.fill(0);
+}
+
+/// Gradient of the pressure in fluid at rest: the balanced force along axes with sides.
+Real3 Solver::hydrostatic_force() const {
+  Real3 force{0, 0, 0};
+  for (int a = 0; a < 3; ++a)
+    if (!sides_.is_periodic(a)) force[a] = balanced_force_[a];
+  return force;
 }
 
 void Solver::return_advective_leak(MomentumTerms& terms) {
@@ -152,8 +168,12 @@ void Solver::return_advective_leak(MomentumTerms& terms) {
   }
 }
 
-void Solver::predict_velocity(const MomentumTerms& terms, Real velocity_scale) {
+void Solver::predict_velocity(const MomentumTerms& terms, Real largest_velocity) {
   load_collector_.start(bodies_.count());
+  Real velocity_scale = largest_velocity;
+  for (const Real force : settings_.body_force)
+    velocity_scale =
+        std::max(velocity_scale, rest_velocity * std::abs(force) * terms.time_step / terms.density);
   velocity_report_ = {};
   for (int c = 0; c < 3; ++c) {
     const WallRows &fixed_rows = boundary_.fixed_rows(c), &moving_rows = boundary_.moving_rows(c);
@@ -233,9 +253,19 @@ void Solver::project_velocity(Real velocity_scale, Real rotational_weight) {
   fill_pressure_ghosts(divergence_, sides_.pressure_sides(), 1);
   {
     const Stopwatch watch(times_.loads);
-    for (int c = 0; c < 3; ++c)
+    const SurroundingPressure surrounding{grid_,
+                                          sides_,
+                                          boundary_.open(),
+                                          pressure_,
+                                          divergence_,
+                                          update.implicit_viscosity,
+                                          hydrostatic_force()};
+    for (int c = 0; c < 3; ++c) {
       load_collector_.add_pressure(c, boundary_.solid(), boundary_.fixed_rows(c), boundary_.moving_rows(c),
                                    pressure_, divergence_, update.implicit_viscosity);
+      load_collector_.add_contact_pressure(c, boundary_.solid(), boundary_.fixed_contacts(c),
+                                           boundary_.moving_contacts(c), surrounding);
+    }
     loads_ = load_collector_.finish();
     for (const BodyLoad& load : loads_)
       require_state(std::isfinite(dot(load.force, load.force) + dot(load.torque, load.torque)),

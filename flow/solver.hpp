@@ -110,7 +110,10 @@ class Solver {
   Index image_overlap_cells();
 
   /// The pressure was written from outside: it balances the body force.
-  void pressure_changed() { force_unbalanced_ = false; }
+  void pressure_changed() {
+    force_unbalanced_ = false;
+    balanced_force_ = settings_.body_force;
+  }
   /// State that a run needs to go on as if it had not stopped.
   Clock clock() const;
   std::vector<StoredField> stored_fields();
@@ -126,8 +129,9 @@ class Solver {
  private:
   void advance();
   void balance_body_force();
+  Real3 hydrostatic_force() const;
   void return_advective_leak(MomentumTerms& terms);
-  void predict_velocity(const MomentumTerms& terms, Real velocity_scale);
+  void predict_velocity(const MomentumTerms& terms, Real largest_velocity);
   void project_velocity(Real velocity_scale, Real rotational_weight);
   /// Closed faces in the state move with their body.
   void impose_body_motion();
@@ -162,6 +166,7 @@ class Solver {
   RowRanges velocity_rows_[3];  // points of each component
   SweepPlan velocity_plan_[3];
   Real fluid_points_[3] = {0, 0, 0}, fixed_fluid_points_[3] = {0, 0, 0};  // without moving bodies
+  Real3 balanced_force_{0, 0, 0};  // the body force for which balance_body_force() was last called
   bool geometry_stale_ = true, force_unbalanced_ = true, sides_stale_ = false, wall_velocity_stale_ = false,
        built_ = false;
 

@@ -29,6 +29,7 @@ void Solver::build_geometry(bool keep_flow) {
     for (int c = 0; c < 3; ++c) velocity_[c].fill(0);
     pressure_.fill(0);
     force_unbalanced_ = true;
+    balanced_force_ = {0, 0, 0};
   }
   potential_.fill(0);
   built_ = true;
@@ -174,6 +175,7 @@ void Solver::restore_clock(const Clock& clock) {
   previous_time_step_ = clock.previous_time_step;
   steps_ = clock.steps;
   force_unbalanced_ = clock.force_unbalanced;
+  balanced_force_ = settings_.body_force;
   for (int n = 0; n < scalars_.count(); ++n)
     scalars_.restore_past(n, clock.scalar_time_steps[static_cast<std::size_t>(n)]);
 }
@@ -213,7 +215,7 @@ void Solver::update_geometry() {
   const std::vector<int> leaping = bodies_that_leap();
   take_requested_poses();
   for (int c = 0; c < 3; ++c) covered_points_.remember(c, boundary_.moving_rows(c));
-  boundary_.update(bodies_, pressure_, wall_friction());
+  boundary_.update(bodies_, pressure_, wall_friction(), hydrostatic_force());
   pressure_solver_.update_open_fractions(boundary_.changed());
   if (!boundary_.changed().empty()) scalars_.geometry_changed();
   subtract_covered_points();

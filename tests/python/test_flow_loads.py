@@ -145,6 +145,79 @@ def test_a_body_that_moves_with_a_uniform_stream_feels_nothing(comoving, load):
     assert np.abs(comoving.hydro_force_torque_reaction()[load]).max() < 1e-6
 
 
+def tank_under_gravity(*places, side="wall"):
+    """Spheres of radius 4 at rest in a closed tank of fluid at rest; their forces over the displaced weight."""
+    solver = flow.Solver(24, 32, 16)
+    for face in ("-x", "+x", "-y", "+y", "-z", "+z"):
+        solver.set_domain_bc(face, side)
+    solver.set_body_force(0, -1e-3, 0)
+    solver.set_scene(*spheres(*((place, 4.0) for place in places)), periodic=False)
+    solver.set_solid_from_scene()
+    for _ in range(2):
+        solver.step()
+    return solver.hydro_force_torque_reaction()[0] / (1e-3 * 4 / 3 * np.pi * 4.0**3)
+
+
+@pytest.mark.parametrize("gap", [0.0, 0.1, 0.5, 1.1])
+def test_bodies_that_touch_in_fluid_at_rest_feel_buoyancy_alone(gap):
+    left, right = (7.5 - gap / 2, 8.0, 7.7), (15.5 + gap / 2, 8.0, 7.7)
+    np.testing.assert_allclose(tank_under_gravity(left, right), [[0, 1, 0]] * 2, atol=0.04)
+
+
+@pytest.mark.parametrize("gap", [-0.1, 0.0, 0.3])
+def test_a_body_on_the_floor_feels_buoyancy(gap):
+    np.testing.assert_allclose(tank_under_gravity((11.6, 3.5 + gap, 7.7)), [[0, 1, 0]], atol=0.04)
+
+
+def test_forces_on_bodies_that_touch_do_not_depend_on_the_level_of_the_pressure():
+    forces = []
+    for level in (0.0, 7.0):
+        solver = box_with(flow.Solver(16, 16, 16), ((4, 6.5, 6.5), 2.0), ((8.1, 6.75, 6.5), 2.0))
+        solver.set_instance_motion(0, (0.1, 0.1, 0))
+        solver.step()
+        solver.set_field("p", solver.get_p() + level)
+        solver.step()
+        forces.append(solver.hydro_force_torque_reaction())
+    np.testing.assert_allclose(*forces, atol=1e-6 * np.abs(forces[0]).max())
+
+
+def test_gravity_changes_nothing_but_the_pressure_around_a_moving_body():
+    states = []
+    for gravity in (0.0, 1.0):
+        solver = flow.Solver(20, 20, 20)
+        for face in ("-x", "+x", "-y", "+y", "-z", "+z"):
+            solver.set_domain_bc(face, "wall")
+        solver.set_mu(1.0)
+        solver.set_dt(2.0)  # viscosity reaches further than a cell in a step
+        solver.set_body_force(0, -gravity, 0)
+        place, velocity = np.array([8.1, 8.2, 9.7]), np.array([0.1, 0.1, 0])
+        solver.set_scene(*spheres((place, 4.0)), periodic=False)
+        solver.set_solid_from_scene()
+        for _ in range(4):
+            place = place + 2.0 * velocity
+            solver.set_instance_transform(0, place)
+            solver.set_instance_motion(0, velocity)
+            solver.step()
+        states.append([solver.get_field(name) for name in "uvw"])
+    np.testing.assert_allclose(states[0], states[1], atol=1e-7)
+
+
+def test_a_closed_tank_stays_at_rest_when_gravity_is_turned():
+    solver = flow.Solver(16, 14, 12)
+    for face in ("-x", "+x", "-y", "+y", "-z", "+z"):
+        solver.set_domain_bc(face, "wall")
+    solver.set_scene(*spheres(((7.2, 6.1, 5.8), 3.1)), periodic=False)
+    solver.set_solid_from_scene()
+    for force in ((0, 0, 0), (0, -1, 0), (0.5, 0, 0.3)):
+        solver.set_body_force(*force)
+        for _ in range(2):
+            solver.step()
+        assert max(np.abs(solver.get_field(name)).max() for name in "uvw") < 1e-9
+        assert solver.hydro_force_torque_reaction()[0, 0] == pytest.approx(
+            -np.array(force) * 4 / 3 * np.pi * 3.1**3, rel=0.05, abs=1e-6
+        )
+
+
 # What the compared implementation gives for the same calls in cell units with density 1. It is first order
 # in time and treats walls differently, so the two agree within the discretisation error: 3 % of the leading
 # component at these resolutions.

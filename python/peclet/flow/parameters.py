@@ -45,7 +45,11 @@ class Parameters(Part):
         self._core.viscosity = _checks.non_negative(mu, "mu")
 
     def set_dt(self, dt: float) -> None:
-        """Time step, positive; it may change from step to step."""
+        """Time step, positive; it may change from step to step.
+
+        Second order in time up to a growth by a factor of 2 at once. Time steps that alternate by a factor
+        above 8 are unstable around bodies.
+        """
         self._core.time_step = _checks.positive(dt, "dt")
 
     @property
