@@ -113,6 +113,29 @@ TOUCHING = ((7.3, 6.1, 5.8), (7.3, 10.6, 5.8))
 HEAD_ON = ((0.0, 0.04, 0.0), (0.0, -0.02, 0.0))
 
 
+@pytest.mark.parametrize("ratio", [0.1, 0.5, 2.0])
+def test_a_light_disk_that_turns_takes_the_fluid_along(ratio):
+    semi_axes = np.array([5.0, 1.5, 5.0])
+    scene = SceneBuilder()
+    scene.add_instance(scene.add_leaf("ellipsoid", list(semi_axes)), translation=[9.3, 9.6, 9.2])
+    flow = Solver(20, 20, 20)
+    flow.set_scene(*scene.encode(), periodic=True)
+    flow.set_solid_from_scene()
+    contacts = Simulation(1)
+    contacts.set_sphere_shape(1.5)
+    contacts.set_positions([[9.3, 9.6, 9.2]])
+    contacts.set_angular_velocities([[1e-3, 0, 0]])
+    volume = 4 / 3 * np.pi * semi_axes.prod()
+    moments = ratio * volume / 5 * ((semi_axes**2).sum() - semi_axes**2)
+    body = Body(0, ratio * volume, volume, tuple(moments))
+    simulation = CoupledSimulation(flow, contacts, [body], time_step=0.1, viscosity=1e-6)
+    simulation.run(30, progress=False)
+    spin = simulation.history["angular_velocity"][:, 0, 0] / 1e-3
+    added = 5.45 * volume  # of this ellipsoid in unbounded ideal fluid [Lamb1932, section 115]
+    assert spin[-1] == pytest.approx(moments[0] / (moments[0] + added), rel=0.2)  # three cells thick
+    assert np.diff(spin).max() < 1e-4
+
+
 def collide(**options):
     simulation = build(
         TOUCHING, radius=2.0, ratio=3.0, velocities=HEAD_ON, gravity=(0, 0, 0), time_step=0.5, **options

@@ -145,11 +145,11 @@ def test_a_body_that_moves_with_a_uniform_stream_feels_nothing(comoving, load):
     assert np.abs(comoving.hydro_force_torque_reaction()[load]).max() < 1e-6
 
 
-def tank_under_gravity(*places, side="wall"):
-    """Spheres of radius 4 at rest in a closed tank of fluid at rest; their forces over the displaced weight."""
+def tank_under_gravity(*places):
+    """Forces on spheres of radius 4 in a closed tank of fluid at rest, over the displaced weight."""
     solver = flow.Solver(24, 32, 16)
     for face in ("-x", "+x", "-y", "+y", "-z", "+z"):
-        solver.set_domain_bc(face, side)
+        solver.set_domain_bc(face, "wall")
     solver.set_body_force(0, -1e-3, 0)
     solver.set_scene(*spheres(*((place, 4.0) for place in places)), periodic=False)
     solver.set_solid_from_scene()

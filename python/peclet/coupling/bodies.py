@@ -56,13 +56,41 @@ class FluidInertia:
 
     The reaction force to a change dv of the velocity over dt is about -(added_mass + damping) dv / dt, of
     which the first part stands only while the body accelerates and the second as long as it moves; likewise
-    for rotations.
+    for rotations, where added_inertia has one value for each principal axis, shape (n, 3).
     """
 
     added_mass: NDArray[np.float64]
     damping: NDArray[np.float64]
     added_inertia: NDArray[np.float64]
     rotational_damping: NDArray[np.float64]
+
+
+def _ellipsoid(body: Body) -> NDArray[np.float64]:
+    """Semi-axes of the homogeneous ellipsoid with the mass and the moments of inertia of a body."""
+    moments = np.array(body.inertia) / body.mass
+    squares = 2.5 * moments.sum() - 5 * moments
+    return np.sqrt(np.maximum(squares, (0.05**2) * squares.max()))  # not thinner than a disk of 1 : 20
+
+
+def _added_by_pressure(semi_axes: NDArray[np.float64]) -> tuple[float, NDArray[np.float64]]:
+    """Largest added mass and the added moments of inertia of an ellipsoid in ideal fluid, over the displaced
+    mass [Lamb1932, sections 114 and 115].
+    """
+    x, weight = np.polynomial.legendre.leggauss(128)
+    x, weight = 0.5 * (1 + x), 0.5 * weight
+    largest = semi_axes.max() ** 2
+    squares = semi_axes[:, None] ** 2 + largest * (x / (1 - x)) ** 2
+    element = weight * 2 * largest * x / (1 - x) ** 3
+    integrals = semi_axes.prod() * (element / (squares * np.sqrt(squares.prod(axis=0)))).sum(axis=1)
+    moments = np.zeros(3)
+    for axis in range(3):
+        j, k = (axis + 1) % 3, (axis + 2) % 3
+        difference = semi_axes[j] ** 2 - semi_axes[k] ** 2
+        both = semi_axes[j] ** 2 + semi_axes[k] ** 2
+        if abs(difference) > 1e-6 * both:
+            slope = integrals[k] - integrals[j]
+            moments[axis] = 0.2 * difference**2 * slope / (2 * difference - both * slope)
+    return float((integrals / (2 - integrals)).max()), moments
 
 
 def fluid_inertia(
@@ -72,21 +100,26 @@ def fluid_inertia(
     time_step: float,
     coefficient: float | None = None,
 ) -> FluidInertia:
-    """Estimated for the sphere of equal volume, radius a, in unbounded fluid.
+    """Estimated in unbounded fluid: what the viscosity adds for the sphere of equal volume, radius a, and what
+    the pressure adds for the ellipsoid of equal moments of inertia.
 
     A sphere that gains the velocity dv at once gives the fluid, within dt, the impulse
     dv (rho V / 2 + 12 a^2 sqrt(pi rho mu dt) + 6 pi mu a dt): added mass, history force and Stokes drag; one
     that gains the rate of rotation dw gives it dw (16/3 a^4 sqrt(pi rho mu dt) + 8 pi mu a^3 dt)
-    [LandauLifshitz1987, section 24].
+    [LandauLifshitz1987, section 24]. Larger estimates are stable, too small ones are not, so the largest
+    added mass and the largest semi-axis of the ellipsoid count.
 
     With a coefficient, the added mass is so many times the displaced mass and the damping zero.
     """
     volume = np.array([body.volume for body in bodies])
     a = np.cbrt(0.75 / math.pi * volume)
+    ellipsoids = [_ellipsoid(body) for body in bodies]
+    by_pressure = [_added_by_pressure(semi_axes) for semi_axes in ellipsoids]
+    largest = np.array([semi_axes.max() for semi_axes in ellipsoids])
     layer = math.sqrt(math.pi * density * viscosity * time_step)
     if coefficient is None:
         added_mass, damping = (
-            density * volume / 2 + 12 * a**2 * layer,
+            density * volume * [mass for mass, _ in by_pressure] + 12 * a**2 * layer,
             6 * math.pi * viscosity * a * time_step,
         )
     else:
@@ -94,6 +127,7 @@ def fluid_inertia(
     return FluidInertia(
         added_mass=added_mass,
         damping=damping,
-        added_inertia=16 / 3 * a**4 * layer,
+        added_inertia=density * volume[:, None] * [moments for _, moments in by_pressure]
+        + (16 / 3 * largest**4 * layer)[:, None],
         rotational_damping=8 * math.pi * viscosity * a**3 * time_step,
     )

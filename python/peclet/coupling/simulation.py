@@ -181,7 +181,8 @@ class CoupledSimulation:
         """Go on from a file that `save` wrote.
 
         The simulation must have been set up by the same calls as the one that was saved; it then goes on bit
-        by bit, for the same number of threads.
+        by bit, for the same number of threads. While bodies touch it goes on to rounding only and without the
+        friction that contacts carry from one substep to the next: that is not saved.
         """
         self.set_state(checkpoint.read(path))
 
@@ -288,11 +289,12 @@ class CoupledSimulation:
 
     def _accelerate_rotation(self, torque: Vectors) -> Vectors:
         """Like _accelerate, of Euler's equation I dw/dt + w x I w = T along the axes of the body."""
-        added, damping = self._fluid.added_inertia[:, None], self._fluid.rotational_damping[:, None]
+        added, damping = self._fluid.added_inertia, self._fluid.rotational_damping[:, None]
         orientation = self._contacts.get_quaternions()
+        former = to_body_axes(orientation, self._angular_acceleration)
         w = to_body_axes(orientation, self._contacts.get_angular_velocities())
         gyroscopic = np.cross(w, self._inertia * w)
-        total = to_body_axes(orientation, torque + added * self._angular_acceleration) - gyroscopic
+        total = to_body_axes(orientation, torque) + added * former - gyroscopic
         acceleration = total / (self._inertia + added + damping)
         self._angular_acceleration = from_body_axes(orientation, acceleration)
         return from_body_axes(orientation, self._inertia * acceleration + gyroscopic)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 from peclet.coupling.checkpoint import State, require_shapes
 
 _CONTACTS = {"positions": 3, "velocities": 3, "angular_velocities": 3, "quaternions": 4}
@@ -19,6 +20,11 @@ def require_valid(flow: Any, flow_part: State, contacts: Any, contact_part: Stat
     require_shapes(flow_part, {name: array.shape for name, array in flow.checkpoint().items()}, "flow")
     count = contacts.num_particles()
     require_shapes(contact_part, {name: (count, n) for name, n in _CONTACTS.items()}, "contacts")
+    for name in _CONTACTS:
+        if not np.isfinite(contact_part[name]).all():
+            raise ValueError(f"contacts/{name}: expected finite numbers, found others")
+    if not contact_part["quaternions"].any(axis=-1).all():
+        raise ValueError("contacts/quaternions: expected rotations, found zero")
 
 
 def restore(flow: Any, flow_part: State, contacts: Any, contact_part: State) -> None:
