@@ -100,8 +100,8 @@ def fluid_inertia(
     time_step: float,
     coefficient: float | None = None,
 ) -> FluidInertia:
-    """Estimated in unbounded fluid: what the viscosity adds for the sphere of equal volume, radius a, and what
-    the pressure adds for the ellipsoid of equal moments of inertia.
+    """Estimated in unbounded fluid: viscosity adds what it does for the sphere of equal volume, radius a, and
+    the pressure what it does for the ellipsoid of equal moments of inertia.
 
     A sphere that gains the velocity dv at once gives the fluid, within dt, the impulse
     dv (rho V / 2 + 12 a^2 sqrt(pi rho mu dt) + 6 pi mu a dt): added mass, history force and Stokes drag; one
