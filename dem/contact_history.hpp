@@ -1,5 +1,7 @@
 #pragma once
 // What rigid contacts keep from one substep to the next: the forces they carried.
+#include <vector>
+
 #include "dem/contact.hpp"
 #include "dem/contact_keys.hpp"
 
@@ -24,6 +26,18 @@ KOKKOS_INLINE_FUNCTION void recall(const ContactHistory& history, const ContactK
   c.carried_force = history.force(former.place);
   c.carried_friction = former.sign * history.friction(former.place);
 }
+
+/// What one contact carried, on the host.
+struct CarriedForce {
+  ContactKey key;
+  Real force = 0;
+  Vec3 friction, normal;
+};
+
+/// Sorted by key; empty where the last substep means nothing to the next one.
+std::vector<CarriedForce> carried_forces(const ContactHistory& history);
+/// The inverse, for so many particles; in any order.
+ContactHistory history_of(std::vector<CarriedForce> carried, Index particles);
 
 /// Remember what the closed contacts carry. The keys go into the history; keys gets the old ones as scratch.
 void record_history(ContactKeys& keys, const Array<Contact>& contacts, Real dt, ContactHistory& history);

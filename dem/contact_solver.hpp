@@ -31,6 +31,10 @@ class ContactSolver {
   SolverReport solve(ContactScene& scene, const Bodies& bodies, const SolverIterations& iterations);
   /// What the last substep carried means nothing to the next one.
   void forget();
+  std::vector<CarriedForce> carried_forces() const { return dem::carried_forces(history_); }
+  void set_carried_forces(std::vector<CarriedForce> carried, Index particles) {
+    history_ = history_of(std::move(carried), particles);
+  }
 
   /// Of the last substep, in solving order.
   const Array<Contact>& contacts() const { return contacts_; }

@@ -166,7 +166,11 @@ void Particles::set_orientations(std::span<const Real> rows) {
     const Real* q = rows.data() + 4 * n;
     const Real largest = std::max({std::abs(q[0]), std::abs(q[1]), std::abs(q[2]), std::abs(q[3])});
     require(largest > 0, "quaternions", "non-zero quaternions", "zeros in row " + std::to_string(n));
-    unit[n] = normalized(Quaternion{q[0] / largest, q[1] / largest, q[2] / largest, q[3] / largest});
+    // one that has unit length already stays as it is, so that what a getter returned can be set again
+    const Real square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+    unit[n] = std::abs(square - 1) <= 4 * std::numeric_limits<Real>::epsilon()
+                  ? Quaternion{q[0], q[1], q[2], q[3]}
+                  : normalized(Quaternion{q[0] / largest, q[1] / largest, q[2] / largest, q[3] / largest});
   }
   upload(arrays_.orientation, unit.data(), count());
 }

@@ -30,6 +30,12 @@ class Simulation {
     soft_solver_.forget();
   }
 
+  /// What the contacts of the last substep hand on to the next one.
+  std::vector<CarriedForce> carried_forces() const { return solver_.carried_forces(); }
+  void set_carried_forces(std::vector<CarriedForce> carried) {
+    solver_.set_carried_forces(std::move(carried), particles_.count());
+  }
+
   /// Advance by dt > 0 with rigid contacts. After an error the state is what it was.
   void step(Real dt);
   /// Advance by substeps of length dt > 0 with elastic contacts; the neighbour list reaches skin radii beyond

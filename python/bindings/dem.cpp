@@ -102,6 +102,35 @@ nb::dict contacts(const Simulation& simulation) {
   return result;
 }
 
+constexpr std::int64_t key_columns = 3, carried_columns = 7;
+
+/// What the next substep takes over: (n, 3) first and second body and image, (n, 7) force, friction, normal.
+nb::tuple carried_forces(const Simulation& simulation) {
+  const std::vector<CarriedForce> carried = simulation.carried_forces();
+  std::vector<std::int32_t> keys;
+  std::vector<double> forces;
+  for (const CarriedForce& c : carried) {
+    keys.insert(keys.end(), {c.key.a, c.key.b, c.key.image});
+    forces.insert(forces.end(),
+                  {c.force, c.friction.x, c.friction.y, c.friction.z, c.normal.x, c.normal.y, c.normal.z});
+  }
+  const auto count = static_cast<std::int64_t>(carried.size());
+  return nb::make_tuple(to_numpy(keys, {count, key_columns}), to_numpy(forces, {count, carried_columns}));
+}
+
+void set_carried_forces(Simulation& simulation, nb::handle contacts, nb::handle forces) {
+  const Input<std::int32_t> keys(contacts, "contacts", {any_size, key_columns});
+  const Input<double> rows(forces, "forces", {keys.extent(0), carried_columns});
+  rows.require_finite();
+  std::vector<CarriedForce> carried;
+  for (Index n = 0; n < keys.extent(0); ++n) {
+    const auto key = [&](Index column) { return keys[n * key_columns + column]; };
+    const auto at = [&](Index column) { return rows[n * carried_columns + column]; };
+    carried.push_back({{key(0), key(1), key(2)}, at(0), {at(1), at(2), at(3)}, {at(4), at(5), at(6)}});
+  }
+  simulation.set_carried_forces(std::move(carried));
+}
+
 nb::dict report(const Simulation& simulation) {
   const SolverReport& last = simulation.report();
   nb::dict result;
@@ -265,6 +294,11 @@ void define_motion(Class& c) {
     return std::pair<Index, double>(census.number_of_contacts, census.largest_overlap);
   });
   c.def("contacts", [](const Simulation& s) { return contacts(s); });
+  c.def("carried_forces", [](const Simulation& s) { return carried_forces(s); });
+  c.def(
+      "set_carried_forces",
+      [](Simulation& s, nb::object contacts, nb::object forces) { set_carried_forces(s, contacts, forces); },
+      "contacts"_a, "forces"_a);
   c.def("report", [](const Simulation& s) { return report(s); });
   c.def("coloring_conflicts", [](const Simulation& s) { return coloring_conflicts(s); });
 }

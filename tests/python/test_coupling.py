@@ -1,42 +1,16 @@
-"""The coupled simulation: conservation, stability for light and heavy bodies, contacts, restart, errors."""
+"""The coupled simulation: conservation, stability for light and heavy bodies, contacts, errors."""
 
-import builtins
 import os
 import signal
 
 import numpy as np
 import pytest
 from peclet.core.geom import SceneBuilder
-from peclet.coupling import Body, CoupledSimulation, checkpoint, rotation
+from peclet.coupling import Body, CoupledSimulation, rotation
 from peclet.dem import Simulation
 from peclet.flow import Solver
 
-CELLS = (16, 20, 12)
-RADIUS = 3.0
-CENTER = (7.3, 9.1, 5.8)
-
-
-def build(centers=(CENTER,), *, ratio=2.0, velocities=None, iterations=None, radius=RADIUS, **options):
-    """Spheres in a periodic box of fluid at rest."""
-    scene = SceneBuilder()
-    ball = scene.add_leaf("sphere", [radius])
-    for center in centers:
-        scene.add_instance(ball, translation=list(center))
-    flow = Solver(*CELLS)
-    flow.set_advection(True)
-    flow.set_scene(*scene.encode(), periodic=True)
-    flow.set_solid_from_scene()
-    contacts = Simulation(len(centers))
-    contacts.set_sphere_shape(radius)
-    contacts.set_positions(np.array(centers))
-    if velocities is not None:
-        contacts.set_velocities(np.array(velocities))
-    if iterations is not None:
-        contacts.set_solver_iterations(*iterations)
-    bodies = [Body.sphere(n, radius=radius, density=ratio) for n in range(len(centers))]
-    defaults = {"time_step": 1.0, "viscosity": 0.01, "gravity": (0.0, -1e-3, 0.0)}
-    return CoupledSimulation(flow, contacts, bodies, **{**defaults, **options})
-
+from tests.python.coupling_scenes import CELLS, CENTER, RADIUS, TOUCHING, build
 
 # ----------------------------------------------------------------------------------------------- motion
 
@@ -109,7 +83,6 @@ def test_spin_decays(ratio):
 
 # --------------------------------------------------------------------------------------------- contacts
 
-TOUCHING = ((7.3, 6.1, 5.8), (7.3, 10.6, 5.8))
 HEAD_ON = ((0.0, 0.04, 0.0), (0.0, -0.02, 0.0))
 
 
@@ -210,62 +183,6 @@ def test_history_holds_every_step():
     mean = 0.5 * (history["velocity"][1:, 0, 1] + history["velocity"][:-1, 0, 1])
     # loads are frozen during a step, so that the mean velocity is exact
     np.testing.assert_allclose(displacement, mean, rtol=1e-9, atol=1e-14)
-
-
-# ---------------------------------------------------------------------------------------------- restart
-
-
-@pytest.mark.parametrize("suffix", ["npz", "h5"])
-def test_goes_on_from_a_file_bit_by_bit(tmp_path, suffix):
-    if suffix == "h5":
-        pytest.importorskip("h5py")
-    whole, first, second = build(), build(), build()
-    whole.run(6, progress=False)
-    first.run(3, progress=False)
-    first.save(tmp_path / f"run.{suffix}")
-    second.restart(tmp_path / f"run.{suffix}")
-    second.run(3, progress=False)
-    assert second.number_of_steps == 6
-    for name, array in whole.history.items():
-        assert np.array_equal(second.history[name], array), name
-    for name, array in whole.state().items():
-        assert np.array_equal(second.state()[name], array), name
-
-
-def test_says_which_extra_is_missing(tmp_path, monkeypatch):
-    original = builtins.__import__
-
-    def without_h5py(name, *args, **kwargs):
-        if name == "h5py":
-            raise ImportError(name)
-        return original(name, *args, **kwargs)
-
-    monkeypatch.setattr(builtins, "__import__", without_h5py)
-    with pytest.raises(ImportError, match=r"peclet-resolved\[io\]"):
-        build().save(tmp_path / "run.h5")
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_refuses_the_state_of_another_run_and_stays_as_it_was():
-    simulation, other = build(), build(TOUCHING, radius=2.0)
-    simulation.run(2, progress=False)
-    before = simulation.state()
-    with pytest.raises(ValueError, match=r"expected .* found"):
-        simulation.set_state(other.state())
-    broken = simulation.state()
-    broken["flow/u"] = broken["flow/u"] * np.nan
-    with pytest.raises(ValueError, match="finite numbers in flow/u"):
-        simulation.set_state(broken)
-    for name, array in simulation.state().items():
-        assert np.array_equal(array, before[name]), name
-
-
-@pytest.mark.parametrize("name", ["run.txt", "run"])
-def test_refuses_unknown_kinds_of_files(tmp_path, name):
-    with pytest.raises(ValueError, match=r"path: expected .*\.npz or \.h5"):
-        checkpoint.write(tmp_path / name, {})
-    with pytest.raises(FileNotFoundError, match="path: expected a file written by save"):
-        checkpoint.read(tmp_path / "missing.npz")
 
 
 # ----------------------------------------------------------------------------------------------- slices

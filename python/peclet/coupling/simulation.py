@@ -181,8 +181,7 @@ class CoupledSimulation:
         """Go on from a file that `save` wrote.
 
         The simulation must have been set up by the same calls as the one that was saved; it then goes on bit
-        by bit, for the same number of threads. While bodies touch it goes on to rounding only and without the
-        friction that contacts carry from one substep to the next: that is not saved.
+        by bit, for the same number of threads.
         """
         self.set_state(checkpoint.read(path))
 

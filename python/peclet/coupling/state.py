@@ -11,18 +11,22 @@ _CONTACTS = {"positions": 3, "velocities": 3, "angular_velocities": 3, "quaterni
 
 
 def contact_state(contacts: Any) -> State:
-    """Pose and velocity of all particles."""
-    return {name: getattr(contacts, f"get_{name}")() for name in _CONTACTS}
+    """Pose and velocity of all particles, and the forces that contacts carry on."""
+    touching, carried = contacts.get_carried_forces()
+    motion = {name: getattr(contacts, f"get_{name}")() for name in _CONTACTS}
+    return motion | {"touching": touching, "carried_forces": carried}
 
 
 def require_valid(flow: Any, flow_part: State, contacts: Any, contact_part: State) -> None:
     """Raise ValueError unless both parts fit the flow and the contacts."""
     require_shapes(flow_part, {name: array.shape for name, array in flow.checkpoint().items()}, "flow")
     count = contacts.num_particles()
-    require_shapes(contact_part, {name: (count, n) for name, n in _CONTACTS.items()}, "contacts")
-    for name in _CONTACTS:
-        if not np.isfinite(contact_part[name]).all():
-            raise ValueError(f"contacts/{name}: expected finite numbers, found others")
+    touching = contact_part.get("touching", np.zeros(0))
+    shapes = {name: (count, n) for name, n in _CONTACTS.items()}
+    shapes |= {"touching": (len(touching), 3), "carried_forces": (len(touching), 7)}
+    require_shapes(contact_part, shapes, "contacts")
+    if touching.dtype.kind not in "iu" or not ((touching[:, 0] >= 0) & (touching[:, 0] < count)).all():
+        raise ValueError(f"contacts/touching: expected first bodies from 0 to below {count}, found others")
     if not contact_part["quaternions"].any(axis=-1).all():
         raise ValueError("contacts/quaternions: expected rotations, found zero")
 
@@ -35,3 +39,4 @@ def restore(flow: Any, flow_part: State, contacts: Any, contact_part: State) -> 
     contacts.set_scales(scales)
     for name in ("velocities", "angular_velocities", "quaternions"):
         getattr(contacts, f"set_{name}")(contact_part[name])
+    contacts.set_carried_forces(contact_part["touching"], contact_part["carried_forces"])

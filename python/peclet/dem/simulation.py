@@ -255,6 +255,20 @@ class Simulation(Surfaces, SoftContacts, Growth, OlderNames):
             self._core.step(length)
             self._grow(length)
 
+    def get_carried_forces(self) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
+        """What the contacts of the last substep hand on to the next one, for a run that goes on bit by bit:
+        set it after the state of the particles.
+
+        contacts: (n, 3), first and second body (second < 0: wall -1 - value) and number of the periodic image
+        or, of walls, of the feature; forces: (n, 7), normal force, friction and normal (3 each) on the first
+        body. Empty after a change of positions, and with elastic contacts, whose springs are not given here.
+        """
+        return self._core.carried_forces()
+
+    def set_carried_forces(self, contacts: ArrayLike, forces: ArrayLike) -> None:
+        """Take over what get_carried_forces returned."""
+        self._core.set_carried_forces(contacts, forces)
+
     def relax(self, n: int = 1) -> None:
         """Push overlapping spheres apart, n times; velocities stay and time stands still."""
         for _ in range(_checks.integer(n, "n", 0)):
