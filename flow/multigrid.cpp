@@ -143,9 +143,8 @@ typename BasicMultigrid<reactive>::Level BasicMultigrid<reactive>::make_level(co
   if (number == 0) return level;
   level.coefficients = FaceVector<float>(name + ".coefficients", shape.layout);
   if constexpr (reactive) {
-    level.reaction.total = Field<float>(name + ".reaction", shape.layout);
-    level.reaction.volume = Field<float>(name + ".volume", shape.layout);
-    level.op = ReactiveOperator<float>(shape, level.coefficients, Real3{1, 1, 1}, level.reaction.total);
+    level.reaction = Field<float>(name + ".reaction", shape.layout);
+    level.op = ReactiveOperator<float>(shape, level.coefficients, Real3{1, 1, 1}, level.reaction);
   } else {
     level.op = LevelOperator<float>(shape, level.coefficients, Real3{1, 1, 1});
   }
@@ -158,7 +157,7 @@ void BasicMultigrid<reactive>::set_open_fractions(const FaceVector<OpenFraction>
   groups_.resize(1);
   std::vector<Level>& levels = groups_[0].levels;
   open_ = open;
-  levels[0].reaction.total = reaction;
+  levels[0].reaction = reaction;
   if constexpr (reactive)
     finest_ = ReactiveOperator<OpenFraction>(levels[0].shape, open, weights_, reaction);
   else
@@ -252,7 +251,7 @@ void BasicMultigrid<reactive>::derive(int group, const std::vector<Box>& pieces)
 template <bool reactive>
 void BasicMultigrid<reactive>::set_coarse_operator(const Group& group) const {
   const float* reaction = nullptr;
-  if constexpr (reactive) reaction = group.levels.back().reaction.total.data();
+  if constexpr (reactive) reaction = group.levels.back().reaction.data();
   if (group.levels.size() == 1)
     group.coarse_solver.template set_operator<OpenFraction>(finest_, reaction);
   else
@@ -317,7 +316,7 @@ std::size_t BasicMultigrid<reactive>::bytes() const {
       total += bytes_of(level.fields.rhs) + bytes_of(level.fields.solution) + bytes_of(level.fields.scratch);
       for (int axis = 0; axis < 3; ++axis)
         if (level.coefficients[axis].is_allocated()) total += bytes_of(level.coefficients[axis]);
-      if (level.reaction.volume.is_allocated()) total += 2 * bytes_of(level.reaction.volume);
+      if (l > 0 && level.reaction.is_allocated()) total += bytes_of(level.reaction);
       total += bytes_of(level.rows) + bytes_of(level.transfer.prolongation_rows);
     }
   }

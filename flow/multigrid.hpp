@@ -27,8 +27,6 @@ class BasicMultigrid {
   /// with the reaction, if any, in units in which an open face along the smallest spacing has coefficient 1.
   void set_open_fractions(const FaceVector<OpenFraction>& open, const RowRanges& rows,
                           const Field<float>& reaction = {});
-  /// The part of the reaction that is in proportion to the volume, for a finest cell.
-  void set_volume_reaction(Real value) { finest_level().reaction.finest_volume = value; }
   /// Parts the cells below the finest level by groups of fluid regions: group is the number of the group of
   /// each finest cell, boxes lie around the groups. Shares the field and derives all levels.
   void set_groups(const std::vector<Box>& boxes, const Field<unsigned char>& group);
@@ -58,7 +56,7 @@ class BasicMultigrid {
     LevelFields fields;
     FaceVector<float> coefficients;  ///< not on the finest level
     Operator<float> op;              ///< not on the finest level
-    LevelReaction reaction;          ///< where there is one
+    Field<float> reaction;           ///< where there is one
     RowRanges rows;
     SweepPlan plan;
     Transfer transfer;  ///< to the next coarser level

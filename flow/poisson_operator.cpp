@@ -61,28 +61,18 @@ template void derive_coefficients(const GroupOperator&, const LevelShape&, const
 template void derive_coefficients(const LevelOperator<float>&, const LevelShape&, const Merging&,
                                   const BoxList&, const FaceVector<float>&);
 
-void derive_reaction(const LevelShape& fine, const LevelReaction& fine_reaction, const Merging& merging,
-                     const BoxList& boxes, const LevelReaction& coarse_reaction) {
-  const LevelReaction from = fine_reaction, to = coarse_reaction;
-  const LevelShape fine_shape = fine;
-  const Real size = std::cbrt(static_cast<Real>(fine.factor[0]) * fine.factor[1] * fine.factor[2]);
-  const Real resistance = 0.5 / size;
+void derive_reaction(const LevelShape& fine, const Field<float>& fine_reaction, const Merging& merging,
+                     const BoxList& boxes, const Field<float>& coarse_reaction) {
+  const Field<float> from = fine_reaction, to = coarse_reaction;
+  const Int3 fine_cells = fine.cells;
   for_each_cell(
       "flow::coarsen_reaction", boxes, KOKKOS_LAMBDA(int i, int j, int k) {
-        const Box box = merging.children({i, j, k}, fine_shape.cells);
-        Real exchange = 0, volume = 0;
+        const Box box = merging.children({i, j, k}, fine_cells);
+        Real sum = 0;
         for (int c = box.low[2]; c < box.high[2]; ++c)
           for (int b = box.low[1]; b < box.high[1]; ++b)
-            for (int a = box.low[0]; a < box.high[0]; ++a) {
-              const Real total = from.total(a, b, c);
-              if (!(total > 0)) continue;
-              const Real own = from.volume.data() ? from.volume(a, b, c) : from.finest_volume;
-              const Real wall = total > own ? total - own : 0;
-              volume += own;
-              exchange += wall / (1 + resistance * wall);
-            }
-        to.volume(i, j, k) = static_cast<float>(volume);
-        to.total(i, j, k) = static_cast<float>(volume + exchange);
+            for (int a = box.low[0]; a < box.high[0]; ++a) sum += from(a, b, c);
+        to(i, j, k) = static_cast<float>(sum);
       });
 }
 

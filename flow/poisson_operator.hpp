@@ -285,16 +285,8 @@ template <class Operator>
 void derive_coefficients(const Operator& fine, const LevelShape& coarse, const Merging& merging,
                          const BoxList& boxes, const FaceVector<float>& coefficients);
 
-/// Reaction of one level: a part in proportion to the volume, and exchange with what lies outside (walls).
-struct LevelReaction {
-  Field<float> total,
-      volume;              // volume is not allocated on the finest level, where it is the same in every cell
-  Real finest_volume = 0;  // whose total is positive
-};
-
-/// Coarse reaction of the cells of the boxes: the sum over the children, from whose centre the centre of the
-/// coarse cell is half a child's width away, which adds to the resistance of the exchange.
-void derive_reaction(const LevelShape& fine, const LevelReaction& fine_reaction, const Merging& merging,
-                     const BoxList& boxes, const LevelReaction& coarse_reaction);
+/// Coarse reaction of the cells of the boxes: the sum over the children.
+void derive_reaction(const LevelShape& fine, const Field<float>& fine_reaction, const Merging& merging,
+                     const BoxList& boxes, const Field<float>& coarse_reaction);
 
 }  // namespace peclet::flow

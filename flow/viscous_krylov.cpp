@@ -288,7 +288,6 @@ void ViscousKrylov::set_system(const ViscousSystem& system) {
   fill_wall_rows(system, system.moving_rows, share, links_, reaction_);
   if (system.is_advected()) add_upwind_exchange(system, exchange_, links_, reaction_);
   for (int a = 0; a < 3; ++a) fill_periodic_ghosts(links_[a], system.sides.periodicity());
-  multigrid_.set_volume_reaction(volume);
   multigrid_.update({Box{{0, 0, 0}, system.grid.cells}});
 }
 

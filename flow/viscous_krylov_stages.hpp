@@ -4,10 +4,6 @@
 
 namespace peclet::flow {
 
-KOKKOS_INLINE_FUNCTION float in_fluid(OpenFraction open, float value) {
-  return static_cast<float>(is_fluid(open)) * value;
-}
-
 /// r = shadow = scale residual, e = product = search = 0.
 struct BeginKrylov {
   using Result = Norms;

@@ -30,6 +30,10 @@ struct ViscousSystem {
   Layout layout() const { return open.layout(); }
 };
 
+KOKKOS_INLINE_FUNCTION float in_fluid(OpenFraction open, float value) {
+  return static_cast<float>(is_fluid(open)) * value;
+}
+
 /// Coefficients of the regular formula.
 template <class T>
 struct Diffusion {

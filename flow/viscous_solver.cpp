@@ -18,32 +18,37 @@ constexpr int sweeps_limit = 190;
 /// Reduction that single-precision sweeps can deliver in one cycle.
 constexpr Real cycle_reduction_limit = 1e-5;
 
-/// First sweep from e = 0: e = scale * residual.
+/// First sweep from e = 0: e = scale * residual, zero at solid points.
 struct FirstSweep {
   using Result = Nothing;
   static constexpr bool may_overrun = true;
   Layout layout;
+  const OpenFraction* open;
   const Real* residual;
   float* e;
   float scale;
 
   struct Row {
+    const OpenFraction* open;
     const Real* residual;
     float* e;
     float scale;
-    KOKKOS_INLINE_FUNCTION void operator()(int i) const { e[i] = scale * static_cast<float>(residual[i]); }
+    KOKKOS_INLINE_FUNCTION void operator()(int i) const {
+      e[i] = in_fluid(open[i], scale * static_cast<float>(residual[i]));
+    }
   };
   KOKKOS_INLINE_FUNCTION Row row(int j, int k) const {
     const Index n = layout(0, j, k);
-    return {residual + n, e + n, scale};
+    return {open + n, residual + n, e + n, scale};
   }
 };
 
-/// next = (1 - weight) e + scale (residual + neighbours).
+/// next = (1 - weight) e + scale (residual + neighbours), zero at solid points, which ghosts are taken from.
 struct Sweep {
   using Result = Nothing;
   static constexpr bool may_overrun = true;
   Layout layout;
+  const OpenFraction* open;
   const Real* residual;
   const float* e;
   float* next;
@@ -51,6 +56,7 @@ struct Sweep {
   float keep, scale;
 
   struct Row {
+    const OpenFraction* open;
     const Real* residual;
     const float* e;
     float* next;
@@ -59,12 +65,13 @@ struct Sweep {
     KOKKOS_INLINE_FUNCTION void operator()(int i) const {
       const float neighbors =
           x * (e[i - 1] + e[i + 1]) + y * (e[i - sy] + e[i + sy]) + z * (e[i - sz] + e[i + sz]);
-      next[i] = keep * e[i] + scale * (static_cast<float>(residual[i]) + neighbors);
+      next[i] = in_fluid(open[i], keep * e[i] + scale * (static_cast<float>(residual[i]) + neighbors));
     }
   };
   KOKKOS_INLINE_FUNCTION Row row(int j, int k) const {
     const Index n = layout(0, j, k);
-    return {residual + n, e + n, next + n, layout.pitch_y, layout.pitch_z, d.x, d.y, d.z, keep, scale};
+    return {open + n, residual + n, e + n, next + n, layout.pitch_y, layout.pitch_z,
+            d.x,      d.y,          d.z,   keep,     scale};
   }
 };
 
@@ -314,7 +321,8 @@ Norms ViscousSolver::run_sweeps(const ViscousSystem& system, const Field<Real>& 
 
   const float first_weight = chebyshev_weight(0, sweeps, spectrum);
   const Stage first(system.rows,
-                    FirstSweep{layout, residual.data(), iterate_.data(), first_weight / diffusion.diagonal},
+                    FirstSweep{layout, system.open.data(), residual.data(), iterate_.data(),
+                               first_weight / diffusion.diagonal},
                     at_walls(fixed, FirstWallSweep{fixed, residual, iterate_, diffusion, first_weight}),
                     at_walls(moving, FirstWallSweep{moving, residual, iterate_, diffusion, first_weight}),
                     ghosts_of(system, iterate_));
@@ -322,8 +330,8 @@ Norms ViscousSolver::run_sweeps(const ViscousSystem& system, const Field<Real>& 
     const float weight = chebyshev_weight(m + 1, sweeps, spectrum);
     const Field<float>&e = iterates[m % 2], &next = iterates[(m + 1) % 2];
     return Stage(system.rows,
-                 Sweep{layout, residual.data(), e.data(), next.data(), diffusion, 1.0F - weight,
-                       weight / diffusion.diagonal},
+                 Sweep{layout, system.open.data(), residual.data(), e.data(), next.data(), diffusion,
+                       1.0F - weight, weight / diffusion.diagonal},
                  at_walls(fixed, WallSweep{fixed, residual, e, next, diffusion, weight}),
                  at_walls(moving, WallSweep{moving, residual, e, next, diffusion, weight}),
                  ghosts_of(system, next));
