@@ -55,6 +55,9 @@ def test_refuses_contacts_of_particles_that_are_not_there():
     state["contacts/touching"] = state["contacts/touching"] + np.array([2, 0, 0], dtype=np.int32)
     with pytest.raises(ValueError, match="contacts/touching: expected first bodies from 0 to below 2"):
         simulation.set_state(state)
+    for name in ("contacts/touching", "history/time"):
+        with pytest.raises(ValueError, match=f"{name}.* shape"):
+            simulation.set_state(simulation.state() | {name: np.array(1)})
     with pytest.raises(ValueError, match="contacts: expected first particles from 0 to below 2, found"):
         simulation.contacts.set_carried_forces([[2, 0, 0]], np.zeros((1, 7)))
 

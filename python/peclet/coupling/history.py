@@ -35,7 +35,7 @@ class History:
         """The inverse of arrays(); refuses what it cannot have returned."""
         if set(arrays) != set(_COLUMNS):
             raise ValueError(f"history: expected {sorted(_COLUMNS)}, found {sorted(arrays)}")
-        length = len(arrays["time"])
+        length = arrays["time"].size
         for name, array in arrays.items():
             expected = (length, *_row_shape(name, bodies))
             if array.shape != expected or length < 1:

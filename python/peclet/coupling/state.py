@@ -22,8 +22,9 @@ def require_valid(flow: Any, flow_part: State, contacts: Any, contact_part: Stat
     require_shapes(flow_part, {name: array.shape for name, array in flow.checkpoint().items()}, "flow")
     count = contacts.num_particles()
     touching = contact_part.get("touching", np.zeros(0))
+    rows = touching.size // 3
     shapes = {name: (count, n) for name, n in _CONTACTS.items()}
-    shapes |= {"touching": (len(touching), 3), "carried_forces": (len(touching), 7)}
+    shapes |= {"touching": (rows, 3), "carried_forces": (rows, 7)}
     require_shapes(contact_part, shapes, "contacts")
     if touching.dtype.kind not in "iu" or not ((touching[:, 0] >= 0) & (touching[:, 0] < count)).all():
         raise ValueError(f"contacts/touching: expected first bodies from 0 to below {count}, found others")
