@@ -326,8 +326,8 @@ void ImmersedBoundary::sample_moving() {
   const bool reaches = reaches_sides(), has_ghosts = reaches || reached_sides_;
   reached_sides_ = reaches;
   const FixedGeometry fixed{fixed_sdf_, fixed_owner_, fixed_open_, fixed_is_empty_};
-  for (CellList* list : {&band_, &former_band_}) list->reserve(regions_.number_of_cells());
   std::swap(band_, former_band_);
+  band_.reserve(regions_.number_of_cells());
   band_mark_ ^= cell_mark::in_band;
   sample_band(solid_, fixed, regions_, band_mark_, band_);
   restore_fixed(solid_, fixed, open_, band_mark_, former_band_);

@@ -31,6 +31,7 @@ struct CellList {
     list.all = cells;
     return list;
   }
+  /// What was listed is lost.
   void reserve(Index capacity) {
     const auto n = static_cast<std::size_t>(capacity);
     if (listed.extent(0) < n) listed = Array<Int3>("flow::cell_list", n + n / 4);

@@ -6,6 +6,7 @@ import time
 import numpy as np
 import pytest
 from peclet import flow
+from peclet.core.geom import SceneBuilder
 
 from tests.python.flow_scenes import box_with, face_is_fluid, spheres
 
@@ -321,6 +322,31 @@ def test_a_moving_body_that_is_taken_away_leaves_no_trace(left):
             solver.step()
     for name in FIELDS:
         np.testing.assert_array_equal(used.get_field(name), fresh.get_field(name))
+
+
+def test_a_body_that_enters_through_a_side_leaves_no_trace_behind():
+    """The region searched for cells near the body grows from one rebuild to the next."""
+
+    def solver_with_body_at(z):
+        scene = SceneBuilder()
+        scene.add_instance(scene.add_leaf("ellipsoid", [5.0, 2.0, 3.0]), translation=[8, 8, z])
+        solver = flow.Solver(20, 16, 32)
+        for side in ("-x", "+x", "-y", "+y", "-z", "+z"):
+            solver.set_domain_bc(side, "wall")
+        solver.set_scene(*scene.encode())
+        solver.set_solid_from_scene()
+        solver.set_instance_motion(0, (0, 0, 1e-3))
+        solver.rebuild_geometry()
+        return solver
+
+    used = solver_with_body_at(0)
+    for z in (14, 24):
+        used.set_instance_transform(0, (8, 8, z))
+        used.rebuild_geometry()
+        fresh = solver_with_body_at(z)
+        for axis in "xyz":
+            found, expected = (getattr(solver, f"get_o{axis}")() for solver in (used, fresh))
+            np.testing.assert_allclose(found, expected, atol=1e-4)
 
 
 def test_turning_the_axes_turns_the_flow():
