@@ -139,17 +139,12 @@ CASES = (
     Case(
         "settling in a wide tank, Re 20",
         small=None,
-        full=lambda curves: settling_in_wide_tank(20, 12, 10, 18, 0.03, 0.04),
-    ),
-    Case(
-        "settling in a wider tank, Re 20",
-        small=None,
-        full=lambda curves: settling_in_wide_tank(20, 8, 16, 24, 0.03, 0.04),
+        full=lambda curves: settling_in_wide_tank(20, 10, 24, 32, 0.03),
     ),
     Case(
         "settling in a wide tank, Re 80",
         small=None,
-        full=lambda curves: settling_in_wide_tank(80, 8, 8, 24, 0.03, 0.03),
+        full=lambda curves: settling_in_wide_tank(80, 8, 8, 30, 0.03),
     ),
     Case(
         "oscillating cylinder",

@@ -232,15 +232,15 @@ def settling_in_box(
 
 
 def settling_in_wide_tank(
-    reynolds: float, resolution: int, width: float, height: float, target: float, bound: float
+    reynolds: float, resolution: int, width: float, height: float, target: float
 ) -> Rows:
     """Final speed of a sphere that settles in a wide tank, beside two correlations of the drag."""
     speed = wide_tank.terminal_speed(*wide_tank.settle(reynolds, resolution, width=width, height=height))
     name = f"settling in a tank {width:g} d wide, Re {reynolds:g}, d/h {resolution}"
     other = wide_tank.speed_of_balance(wide_tank.clift_grace_weber, reynolds)
     return [
-        Row(name, "u / u of Schiller and Naumann", 1.0, speed, target, bound=bound),
-        Row(name, "the same, drag of Clift, Grace and Weber", other, speed, target, bound=bound),
+        Row(name, "u / u of Schiller and Naumann", 1.0, speed, target),
+        Row(name, "the same, drag of Clift, Grace and Weber", other, speed, target),
     ]
 
 

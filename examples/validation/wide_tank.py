@@ -31,7 +31,8 @@ def settle(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Distance fallen in diameters, and speed over that at which weight and drag balance.
 
-    The drag is that of schiller_naumann(). It falls until its centre is four diameters above the floor.
+    The drag is that of schiller_naumann(). It falls until its centre is eight diameters above the floor,
+    which below that slows it down.
     """
     d, speed = resolution, 1.0
     cells = (round(width * d), round(width * d), round(height * d))
@@ -46,7 +47,7 @@ def settle(
     added = 0.5 * volume + 3 * d**2 * np.sqrt(np.pi * mu * dt)
     start, velocity, acceleration = position, 0.0, 0.0
     fallen, speeds = [], []
-    while position > 4 * d:
+    while position > 8 * d:
         box.place(position, velocity)
         acceleration = (box.step() - weight + added * acceleration) / (mass + added)
         velocity += acceleration * dt
