@@ -10,6 +10,17 @@ struct Periodicity {
   bool axis[3] = {true, true, true};
 };
 
+/// The axes whose ghosts count: what happens in a box that keeps away from both sides depends on none.
+struct GhostAxes {
+  bool axis[3] = {true, true, true};
+
+  GhostAxes() = default;
+  GhostAxes(const Int3& cells, const Box& box) {
+    for (int a = 0; a < 3; ++a)
+      axis[a] = box.low[a] <= Layout::ghost_width || box.high[a] >= cells[a] - Layout::ghost_width;
+  }
+};
+
 /// The layers on both sides of one axis, with the ghosts that the axes before it have filled: depth counts
 /// the layers from each side, 0 being the one next to it.
 inline Box ghost_layers(const Int3& cells, int axis, int width) {

@@ -90,13 +90,14 @@ struct SideGhosts {
 };
 
 void fill_component_ghosts(const Field<Real>& field, int c, const DomainSides& sides, bool is_correction,
-                           const Field<Real>* velocity, bool stops_backflow, int width) {
+                           const Field<Real>* velocity, bool stops_backflow, int width,
+                           const GhostAxes& counting) {
   for (int axis = 0; axis < 3; ++axis) {
     Box layers = ghost_layers(field.layout().cells, axis, width);
     // unknown points on the high side along c have neighbours beyond the other sides
     if (axis < c && sides.side[c][1].kind == SideKind::Outflow) ++layers.high[c];
     if (sides.is_periodic(axis)) {
-      fill_periodic_layers(field, axis, layers);
+      if (counting.axis[axis]) fill_periodic_layers(field, axis, layers);
       continue;
     }
     layers.high[axis] = 1;
@@ -214,9 +215,9 @@ template void fill_mirrored_ghosts(const Field<Real>&, const DomainSides&, int);
 template void fill_mirrored_ghosts(const Field<int>&, const DomainSides&, int);
 
 void fill_velocity_ghosts(const FaceVector<Real>& velocity, int c, const DomainSides& sides, int width,
-                          bool stops_backflow) {
+                          bool stops_backflow, const GhostAxes& counting) {
   const Field<Real> components[3] = {velocity.x, velocity.y, velocity.z};
-  fill_component_ghosts(velocity[c], c, sides, false, components, stops_backflow, width);
+  fill_component_ghosts(velocity[c], c, sides, false, components, stops_backflow, width, counting);
 }
 
 void fill_outflow_points(const FaceVector<Real>& velocity, const DomainSides& sides) {
@@ -233,8 +234,9 @@ void fill_outflow_points(const FaceVector<Real>& velocity, const DomainSides& si
   }
 }
 
-void fill_correction_ghosts(const Field<Real>& correction, int c, const DomainSides& sides, int width) {
-  fill_component_ghosts(correction, c, sides, true, nullptr, false, width);
+void fill_correction_ghosts(const Field<Real>& correction, int c, const DomainSides& sides, int width,
+                            const GhostAxes& counting) {
+  fill_component_ghosts(correction, c, sides, true, nullptr, false, width, counting);
 }
 
 void fill_open_ghosts(const FaceVector<OpenFraction>& open, const Field<Real>& sdf,

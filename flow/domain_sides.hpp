@@ -66,15 +66,18 @@ void fill_mirrored_ghosts(const Field<T>& field, const DomainSides& sides, int w
 /// Prescribed points of the sides, and ghosts of velocity component c. Tangential values follow the parabola
 /// through the side and two points: exact for quadratic profiles. Component order does not matter, but the
 /// ghosts of the tangential components read the normal one at Outflow sides: fill that first. stops_backflow:
-/// what flows back through an Outflow side brings no momentum.
+/// what flows back through an Outflow side brings no momentum. Periodic ghosts that do not count are left
+/// out.
 void fill_velocity_ghosts(const FaceVector<Real>& velocity, int c, const DomainSides& sides,
-                          int width = Layout::ghost_width, bool stops_backflow = false);
+                          int width = Layout::ghost_width, bool stops_backflow = false,
+                          const GhostAxes& counting = {});
 
 /// Points on high Outflow sides := the points beside them.
 void fill_outflow_points(const FaceVector<Real>& velocity, const DomainSides& sides);
 
 /// fill_velocity_ghosts for a change of the velocity: zero on prescribed points, homogeneous ghosts.
-void fill_correction_ghosts(const Field<Real>& correction, int c, const DomainSides& sides, int width = 1);
+void fill_correction_ghosts(const Field<Real>& correction, int c, const DomainSides& sides, int width = 1,
+                            const GhostAxes& counting = {});
 
 /// open: faces on sides that the pressure does not see become 0, those on Outflow sides fully open unless the
 /// cell behind is solid; beyond, mirrored.

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "flow/open_rows.hpp"
+
 namespace peclet::flow {
 namespace {
 
@@ -138,30 +140,6 @@ void extrapolate_pressure(const Grid& grid, const FaceVector<OpenFraction>& open
       });
 }
 
-/// Per row of cells, the range outside which every face is closed; it begins on whole vectors.
-RowRanges open_row_ranges(const FaceVector<OpenFraction>& open_fractions, const Int3& n) {
-  RowRanges rows(n);
-  const auto count = static_cast<std::size_t>(rows.number_of_rows());
-  rows.first = Array<int>("flow::rows.first", count);
-  rows.last = Array<int>("flow::rows.last", count);
-  const FaceVector<OpenFraction> open = open_fractions;
-  const Array<int> first = rows.first, last = rows.last;
-  const Layout layout = open.x.layout();
-  for_each(
-      "flow::open_row_ranges", rows.number_of_rows(), KOKKOS_LAMBDA(Index row) {
-        const int j = static_cast<int>(row % n[1]), k = static_cast<int>(row / n[1]);
-        int begin = n[0], end = 0;
-        for (int i = 0; i < n[0]; ++i) {
-          if (!is_open_cell(open, layout(i, j, k))) continue;
-          begin = i < begin ? i : begin;
-          end = i + 1;
-        }
-        first(row) = end > begin ? begin / Layout::alignment * Layout::alignment : 0;
-        last(row) = end > begin ? end : 0;
-      });
-  return rows;
-}
-
 /// Points of component c that are fluid in fixed and not in open, less those the other way round.
 Real count_covered_points(int c, const Field<OpenFraction>& open, const Field<OpenFraction>& fixed,
                           const DomainSides& sides, const CellList& near) {
@@ -277,6 +255,7 @@ void ImmersedBoundary::sample_fixed(Bodies& bodies) {
   open_fixed_faces(FaceOpener(solid_, 0), open_, solid_.marks);
   fill_open_ghosts(open_, solid_.sdf, sides_);
   rows_ = open_row_ranges(open_, grid_.cells);
+  ghost_axes_ = GhostAxes(grid_.cells, box_of_open_cells(open_, rows_));
   const CellList whole = CellList::of_grid(grid_.cells);
   CellList near;
   near.listed = Array<Int3>("flow::fixed_cells", static_cast<std::size_t>(whole.count));

@@ -45,6 +45,7 @@ class ImmersedBoundary {
   const SolidSampler& solid() const { return solid_; }
   /// Rows of cells that are not solid for good.
   const RowRanges& rows() const { return rows_; }
+  const GhostAxes& ghost_axes() const { return ghost_axes_; }
   /// Cells whose faces changed in the last update.
   const std::vector<Box>& changed() const { return changed_; }
   /// Fluid points of component c of the fixed geometry that are none now.
@@ -70,6 +71,7 @@ class ImmersedBoundary {
   Field<Real> fixed_sdf_;
   Field<int> fixed_owner_;
   RowRanges rows_;
+  GhostAxes ghost_axes_;
   RegionList regions_;
   CellList band_, former_band_, near_;  // near_ is part of band_
   int band_mark_ = cell_mark::in_even_band;

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "core/error.hpp"
-#include "core/halo.hpp"
 #include "flow/conjugate_gradient.hpp"
 #include "flow/fluid_regions.hpp"
 
@@ -24,11 +23,12 @@ void require_settings(const PressureSettings& settings) {
 
 }  // namespace
 
-void fill_pressure_ghosts(const Field<Real>& pressure, const PressureSides& sides, int width) {
+void fill_pressure_ghosts(const Field<Real>& pressure, const PressureSides& sides, int width,
+                          const GhostAxes& counting) {
   for (int axis = 0; axis < 3; ++axis) {
     const Box layers = ghost_layers(pressure.layout().cells, axis, width);
     if (sides.is_periodic(axis)) {
-      fill_periodic_layers(pressure, axis, layers);
+      if (counting.axis[axis]) fill_periodic_layers(pressure, axis, layers);
       continue;
     }
     const Real low = sides.side[axis][0] == PressureSide::Fixed ? -1 : 1;

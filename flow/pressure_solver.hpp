@@ -7,6 +7,7 @@
 
 #include "core/field.hpp"
 #include "core/grid.hpp"
+#include "core/halo.hpp"
 #include "core/loop.hpp"
 #include "flow/open_fraction.hpp"
 
@@ -27,9 +28,9 @@ struct SolveReport {
 };
 
 /// Ghosts of a value at cell centres: periodic copies, mirrored on Closed sides, antisymmetric on Fixed
-/// sides.
+/// sides. Periodic ghosts that do not count are left out.
 void fill_pressure_ghosts(const Field<Real>& pressure, const PressureSides& sides,
-                          int width = Layout::ghost_width);
+                          int width = Layout::ghost_width, const GhostAxes& counting = {});
 
 /// Solves  sum over the faces of a cell of  o (phi_neighbour - phi) / h_a^2 = rhs  in every cell with an open
 /// face, o being the open fraction of the face and h_a the spacing normal to it.

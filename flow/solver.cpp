@@ -113,7 +113,7 @@ void Solver::advance() {
   const bool stops_backflow = terms.scheme != AdvectionScheme::None && !is_viscous;
   const Real rotational_share = is_viscous ? viscous_rotational_share(sides_, boundary_.has_slits()) : 1;
   fill_velocity(extrapolated_, 2, stops_backflow);
-  fill_pressure_ghosts(pressure_, sides_.pressure_sides(), 1);
+  fill_pressure_ghosts(pressure_, sides_.pressure_sides(), 1, boundary_.ghost_axes());
 
   return_advective_leak(terms);
 
@@ -214,7 +214,7 @@ void Solver::predict_velocity(const MomentumTerms& terms, Real largest_velocity)
     }
     {
       const Stopwatch watch(times_.loads);
-      fill_correction_ghosts(correction, c, sides_);
+      fill_correction_ghosts(correction, c, sides_, 1, boundary_.ghost_axes());
       load_collector_.add_momentum(c, terms, boundary_.solid(), fixed_rows, moving_rows, correction);
     }
     apply_correction(velocity_plan_[c], velocity_rows_[c], terms.step_ratio, velocity_[c], correction,
@@ -249,8 +249,8 @@ void Solver::project_velocity(Real velocity_scale, Real rotational_weight) {
   const ProjectionUpdate update{settings_.density / settings_.time_step,
                                 rotational_weight * settings_.viscosity, potential_, divergence_};
   apply_projection(grid_, plan_, boundary_.rows(), boundary_.open(), sides_, update, velocity_, pressure_);
-  fill_pressure_ghosts(pressure_, sides_.pressure_sides(), 1);
-  fill_pressure_ghosts(divergence_, sides_.pressure_sides(), 1);
+  fill_pressure_ghosts(pressure_, sides_.pressure_sides(), 1, boundary_.ghost_axes());
+  fill_pressure_ghosts(divergence_, sides_.pressure_sides(), 1, boundary_.ghost_axes());
   {
     const Stopwatch watch(times_.loads);
     const SurroundingPressure surrounding{grid_,

@@ -108,7 +108,8 @@ void Solver::impose_walls(const FaceVector<Real>& velocity) const {
 }
 
 void Solver::fill_velocity(const FaceVector<Real>& velocity, int width, bool stops_backflow) const {
-  for (int c = 0; c < 3; ++c) fill_velocity_ghosts(velocity, c, sides_, width, stops_backflow);
+  for (int c = 0; c < 3; ++c)
+    fill_velocity_ghosts(velocity, c, sides_, width, stops_backflow, boundary_.ghost_axes());
 }
 
 void Solver::set_side(int axis, int high, const DomainSide& side) {

@@ -285,3 +285,24 @@ def test_reference_crossing_the_edge_is_mirror_symmetric():
     assert forces[0] == pytest.approx(forces[1], rel=1e-6)
     # the impulsive part is rho U times the added mass over dt, the viscous one depends on the first step
     assert forces[0] == pytest.approx(-12.12739, rel=0.1)
+
+
+def test_a_cavity_is_the_same_amid_a_periodic_box_and_across_its_sides():
+    """Ghosts count in one of the two only."""
+    n, results = 24, []
+    for shift in (0, n // 2):
+        solver = flow.Solver(n, n, n)
+        away = np.abs((np.arange(n) - (n - 1) / 2 - shift + n / 2) % n - n / 2)
+        solver.set_solid(7.5 - np.maximum(np.maximum(*np.ix_(away, away)), away[:, None, None]))
+        center = (n - 1) / 2 + shift + np.array([0.3, -0.8, 0.6])
+        solver.set_scene(*spheres((center, 2.7, (0.1, -0.2, 0.05), (0.02, 0, 0.03))), periodic=True)
+        solver.set_dt(0.5)
+        for _ in range(3):
+            center += 0.5 * np.array([0.1, -0.2, 0.05])
+            solver.set_instance_transform(0, center)
+            solver.step()
+        results.append((np.roll(solver.get_u(), -shift, (0, 1, 2)), solver.hydro_force_torque_reaction()))
+    (amid, load), (across, other_load) = results
+    assert np.abs(amid).max() > 0.05
+    np.testing.assert_allclose(across, amid, atol=1e-8)
+    np.testing.assert_allclose(other_load, load, rtol=1e-5, atol=1e-7)
