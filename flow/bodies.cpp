@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/error.hpp"
 
@@ -93,6 +94,21 @@ bool Bodies::any_moves() const {
   for (int b = 0; b < count(); ++b)
     if (moves(b)) return true;
   return false;
+}
+
+Real Bodies::thickness(int b) const {
+  const Body& body = (*this)[b];
+  Real smallest = std::numeric_limits<Real>::infinity();
+  if (body.pose.scale == 0) return smallest;
+  for (int a = 0; a < 3; ++a) {
+    Vec3 direction;
+    direction[a] = 1;
+    direction = rotate(body.pose.rotation, direction);
+    Vec3 step;
+    for (int c = 0; c < 3; ++c) step[c] = direction[c] * grid_.spacing[c];
+    smallest = std::min(smallest, body.pose.scale * (body.local_high[a] - body.local_low[a]) / norm(step));
+  }
+  return smallest;
 }
 
 Real Bodies::largest_courant_rate() const {

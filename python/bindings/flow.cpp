@@ -4,6 +4,9 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 
+#include <algorithm>
+#include <limits>
+
 #include "flow/solver.hpp"
 #include "python/bindings/arrays.hpp"
 #include "python/bindings/flow_checkpoint.hpp"
@@ -301,6 +304,17 @@ void define_geometry(nb::class_<Solver>& solver) {
            })
       .def("body_center_pinned",
            [](const Solver& s, int body) { return s.bodies().center_pinned(checked_body(s, body)); })
+      .def("thinnest_body",
+           [](const Solver& s) {
+             int thinnest = -1;
+             Real smallest = std::numeric_limits<Real>::infinity();
+             for (int b = 0; b < s.bodies().count(); ++b) {
+               const Real thickness = s.bodies().thickness(b);
+               if (thickness < smallest) thinnest = b;
+               smallest = std::min(smallest, thickness);
+             }
+             return std::tuple<int, Real>(thinnest, smallest);
+           })
       .def("any_body_moves", [](const Solver& s) { return s.bodies().any_moves(); })
       .def("distance_and_owner", &distance_and_owner)
       .def("image_overlap_cells", &Solver::image_overlap_cells)

@@ -1,8 +1,11 @@
 """Forces: budgets, shares, units, and small published-by-measurement cases of the same calls."""
 
+import warnings
+
 import numpy as np
 import pytest
 from peclet import flow
+from peclet.core.geom import SceneBuilder
 
 from tests.python.flow_scenes import box_with, spheres
 
@@ -306,3 +309,16 @@ def test_a_cavity_is_the_same_amid_a_periodic_box_and_across_its_sides():
     assert np.abs(amid).max() > 0.05
     np.testing.assert_allclose(across, amid, atol=1e-8)
     np.testing.assert_allclose(other_load, load, rtol=1e-5, atol=1e-7)
+
+
+def test_bodies_thinner_than_a_cell_are_named():
+    scene = SceneBuilder()
+    scene.add_instance(scene.add_leaf("sphere", [0.2]), translation=[0.5, 0.5, 0.5])
+    plate = scene.add_leaf("box", [0.2, 0.2, 0.02])
+    turned = [np.sqrt(0.5), 0, 0, np.sqrt(0.5)]  # about x: its normal is y now, along which cells are small
+    scene.add_instance(plate, translation=[0.5, 0.5, 0.2], rotation=turned)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        flow.Solver((16, 32, 16), extent=(1, 1, 1)).set_scene(*scene.encode())
+    with pytest.warns(RuntimeWarning, match=r"body 1 is 0\.64 cells thick"):
+        flow.Solver((16, 16, 16), extent=(1, 1, 1)).set_scene(*scene.encode())

@@ -18,6 +18,15 @@ def _warn_projection(call: str) -> None:
     )
 
 
+def _warn_thin(body: int, thickness: float) -> None:
+    warnings.warn(
+        f"set_scene(): body {body} is {thickness:.2g} cells thick; the fluid may not see bodies that are "
+        "thinner than a cell",
+        RuntimeWarning,
+        stacklevel=3,
+    )
+
+
 class Geometry(Part):
     """Lengths, positions and velocities are in scene coordinates: cells, or the user's units."""
 
@@ -36,7 +45,8 @@ class Geometry(Part):
         set_solid_from_scene(), or with rebuild_geometry() to keep the flow.
 
         Raises ValueError for records of the wrong length, unknown opcodes, indices out of range, cycles,
-        and numbers that make no sense; the scene given before stays then.
+        and numbers that make no sense; the scene given before stays then. RuntimeWarning for a body that is
+        thinner than a cell.
         """
         periodic = _checks.flag(periodic, "periodic")
         self._core.set_scene(
@@ -46,6 +56,9 @@ class Geometry(Part):
             _checks.numbers(instance_reals, "instance_reals"),
             periodic,
         )
+        body, thickness = self._core.thinnest_body()
+        if thickness < 1:
+            _warn_thin(body, thickness)
         self._status.has_scene = True
         self._status.has_solid = False
         self._forget_loads()
