@@ -6,6 +6,7 @@ import dataclasses
 from collections.abc import Callable
 
 from examples.validation.comparisons import (
+    FALL_TIMES,
     Curves,
     Rows,
     cavity_rows,
@@ -28,6 +29,7 @@ from examples.validation.comparisons import (
 )
 from examples.validation.heat import cavity_rows as heated_cavity_rows
 from examples.validation.heat import sphere_rows
+from examples.validation.results import with_order
 
 
 @dataclasses.dataclass(frozen=True)
@@ -53,30 +55,36 @@ CASES = (
     Case(
         "cylinder in a channel, steady",
         small=lambda: steady_cylinder(10, 4, 0.02, 0.3),
-        full=lambda curves: steady_cylinder(20, 8, 0.02, 0.02),
+        full=lambda curves: with_order(lambda n: steady_cylinder(n, 8, 0.02, 0.02), (10, 20)),
     ),
     Case(
         "cylinder in a channel, shedding",
         small=None,
-        full=lambda curves: shedding_cylinder(30, 6, 0.02, curves),
+        full=lambda curves: with_order(lambda n: shedding_cylinder(n, 6, 0.02, curves), (15, 30)),
     ),
     Case(
         "spheres at rest",
-        small=lambda: dense_and_dilute(16, 5e-3),
-        full=lambda curves: dense_and_dilute(16, 5e-3) + dense_and_dilute(32, 3e-3),
+        small=lambda: with_order(lambda n: dense_and_dilute(n, 5e-3), (8, 16), 1.8),
+        full=lambda curves: (
+            with_order(lambda n: dense_and_dilute(n, 5e-3), (8, 16), 1.8)
+            + with_order(lambda n: dense_and_dilute(n, 3e-3), (16, 32))
+        ),
     ),
     Case(
         "towed spheres",
         small=lambda: towed_rows(16, 0.25, 1.2e-2, 2e-3, 5e-3),
         full=lambda curves: (
-            towed_rows(24, 0.25, 5e-3, 5e-4, 2.2e-3) + towed_rows(24, 0.1, 5e-3, 1e-3, 2.2e-3)
+            with_order(lambda n: towed_rows(n, 0.25, 5e-3, 5e-4, 2.2e-3, curves), (12, 24))
+            + with_order(lambda n: towed_rows(n, 0.1, 5e-3, 1e-3, 2.2e-3, curves), (12, 24))
         ),
     ),
     Case(
         "spinning spheres",
         small=lambda: torque_rows(19, 0.125, 0.02),
         full=lambda curves: (
-            torque_rows(19, 0.125, 0.02) + torque_rows(24, 0.064, 0.02) + torque_rows(32, 0.027, 0.02)
+            with_order(lambda n: torque_rows(n, 0.125, 0.02), (10, 19))
+            + with_order(lambda n: torque_rows(n, 0.064, 0.02), (12, 24))
+            + with_order(lambda n: torque_rows(n, 0.027, 0.02), (16, 32))
         ),
     ),
     Case(
@@ -91,29 +99,36 @@ CASES = (
     Case(
         "sphere in a closed cube",
         small=lambda: closed_cube(6, 0.3, 0.02),
-        full=lambda curves: closed_cube(12, 0.3, 0.02) + closed_cube(20, 0.3, 0.01),
+        full=lambda curves: (
+            with_order(lambda n: closed_cube(n, 0.3, 0.02), (6, 12))
+            + with_order(lambda n: closed_cube(n, 0.3, 0.01), (12, 20))
+        ),
     ),
     Case(
         "sphere in a square duct",
         small=lambda: closed_duct(4, 0.2, 0.03),
-        full=lambda curves: closed_duct(12, 0.2, 0.02),
+        full=lambda curves: with_order(lambda n: closed_duct(n, 0.2, 0.02), (6, 12)),
     ),
     Case(
         "sphere approaching a plane",
         small=lambda: towards_plane(4, 48, (1, 0.75), 0.04),
-        full=lambda curves: towards_plane(6, 96, (2, 1, 0.5), 0.04),
+        full=lambda curves: with_order(lambda a: towards_plane(a, 16 * a, (2, 1, 0.5), 0.04, curves), (3, 6)),
     ),
     Case(
         "oscillating sphere",
         small=lambda: oscillating_sphere(4, 48, 0.05),
-        full=lambda curves: oscillating_sphere(6, 96, 0.03),
+        full=lambda curves: with_order(lambda a: oscillating_sphere(a, 16 * a, 0.03), (3, 6)),
     ),
     Case(
         "fall from rest",
         small=lambda: falling_sphere(4, 48, 1.5, 0.05, 0.06, 0.06, ("0.5", "1")),
         full=lambda curves: (
-            falling_sphere(6, 120, 1.5, 0.0125, 0.03, 0.035, ("0.1", "0.5", "1", "2"))
-            + falling_sphere(6, 120, 7.8, 0.0125, 0.03, 0.03, ("0.1", "0.5", "1", "2"))
+            with_order(
+                lambda a: falling_sphere(a, 20 * a, 1.5, 0.075 / a, 0.03, 0.035, FALL_TIMES, curves), (3, 6)
+            )
+            + with_order(
+                lambda a: falling_sphere(a, 20 * a, 7.8, 0.075 / a, 0.03, 0.03, FALL_TIMES, curves), (3, 6)
+            )
         ),
     ),
     Case(
@@ -154,25 +169,25 @@ CASES = (
     Case(
         "oscillating cylinder, finer grid",
         small=None,
-        full=lambda curves: moving_cylinder(32, 16, 6, 0.04, 0.05, curves),
+        full=lambda curves: with_order(lambda n: moving_cylinder(n, 16, 6, 0.04, 0.05, curves), (16, 32)),
     ),
     Case(
         "oscillating cylinder in its own frame",
         small=lambda: cylinder_at_rest(12, 0.08),
-        full=lambda curves: cylinder_at_rest(24, 0.04),
+        full=lambda curves: with_order(lambda n: cylinder_at_rest(n, 0.04), (12, 24)),
     ),
     Case(
         "heated sphere",
-        small=lambda: sphere_rows(16, 5e-3),
-        full=lambda curves: sphere_rows(48, 1e-3),
+        small=lambda: with_order(lambda n: sphere_rows(n, 5e-3), (8, 16), 1.5),
+        full=lambda curves: with_order(lambda n: sphere_rows(n, 1e-3), (24, 48), 1.5),
     ),
     Case(
         "heated cavity",
         small=lambda: heated_cavity_rows(16, 1000, 3e-3, 0.03) + heated_cavity_rows(24, 10000, 5e-3, 0.03),
         full=lambda curves: (
-            heated_cavity_rows(40, 1000, 5e-3, 0.01)
-            + heated_cavity_rows(40, 10000, 5e-3, 0.01)
-            + heated_cavity_rows(64, 100000, 5e-3, 0.01)
+            with_order(lambda n: heated_cavity_rows(n, 1000, 5e-3, 0.01), (20, 40))
+            + with_order(lambda n: heated_cavity_rows(n, 10000, 5e-3, 0.01), (20, 40))
+            + with_order(lambda n: heated_cavity_rows(n, 100000, 5e-3, 0.01), (32, 64))
         ),
     ),
 )

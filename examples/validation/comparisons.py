@@ -115,9 +115,18 @@ def dense_and_dilute(cells: int, target: float) -> Rows:
     return array_rows(cells, 0.125, exact_drag(0.125), target) + array_rows(cells, DENSE, DENSE_DRAG, target)
 
 
-def towed_rows(cells: int, courant: float, target: float, noise_target: float, largest_target: float) -> Rows:
+def towed_rows(
+    cells: int,
+    courant: float,
+    target: float,
+    noise_target: float,
+    largest_target: float,
+    curves: Curves | None = None,
+) -> Rows:
     """Mean K and its noise, in Stokes flow."""
     factors, _ = arrays.towed(cells, courant, 3, 30)
+    if curves is not None:
+        curves[f"towed-{courant}"] = {"way": courant * np.arange(1, len(factors) + 1), "K": factors}
     rms, largest = arrays.noise(factors)
     name = f"towed spheres, phi 0.064, {cells} cells, Courant number {courant}"
     return [
@@ -167,9 +176,14 @@ def closed_duct(diameter: int, ratio: float, target: float) -> Rows:
     ]
 
 
-def towards_plane(radius: int, width: int, gaps: tuple[float, ...], target: float) -> Rows:
+def towards_plane(
+    radius: int, width: int, gaps: tuple[float, ...], target: float, curves: Curves | None = None
+) -> Rows:
     """K at several gaps, in radii; the slip sides are far away only for the smaller ones."""
-    found = walls.drag_towards_plane(radius, width, gaps, reynolds=0.1, steps=16)
+    passed, drags = walls.drag_towards_plane(radius, width, gaps[0], gaps[-1], reynolds=0.1, steps=16)
+    if curves is not None:
+        curves["plane"] = {"gap": passed, "K": drags}
+    found = np.interp(gaps, passed, drags)
     name = f"sphere approaching a plane, a/h {radius}"
     return [
         Row(name, f"K at a gap of {gap:g} a", walls.brenner(gap), float(K), target)
@@ -200,21 +214,33 @@ def falling_sphere(
     target: float,
     bound: float,
     times: tuple[str, ...],
+    curves: Curves | None = None,
 ) -> Rows:
     """Velocity with added mass and history force."""
     fall = walls.free_fall(radius, width, density_ratio, float(times[-1]), dt=dt)
+    if curves is not None:
+        curves[f"fall-{density_ratio}"] = {"time": fall.time, "velocity": fall.velocity}
+    name = f"fall from rest, density ratio {density_ratio}, d/h {2 * radius}"
     rows = []
     for time in times:
-        (line,) = (
-            line
-            for line in published("stokes_references", parameter=time)
-            if line["case"].endswith(f"rho_p/rho_f={density_ratio}: v/v_Stokes")
-        )
         found = float(np.interp(float(time), fall.time, fall.velocity))
-        name = f"fall from rest, density ratio {density_ratio}, d/h {2 * radius}"
-        exact = float(line["value_K_or_formula"])
+        exact = exact_fall(density_ratio, time)
         rows.append(Row(name, f"v at t nu/a^2 = {time}", exact, found, target, bound=bound))
     return rows
+
+
+# Of a fall from rest, over a^2 / nu, where the exact velocity is known.
+FALL_TIMES = ("0.1", "0.5", "1", "2")
+
+
+def exact_fall(density_ratio: float, time: str) -> float:
+    """Velocity over that of Stokes' law, with added mass and history force."""
+    (line,) = (
+        line
+        for line in published("stokes_references", parameter=time)
+        if line["case"].endswith(f"rho_p/rho_f={density_ratio}: v/v_Stokes")
+    )
+    return float(line["value_K_or_formula"])
 
 
 def settling_in_box(

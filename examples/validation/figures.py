@@ -7,8 +7,10 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from examples.validation import cylinder
+from examples.validation.comparisons import FALL_TIMES, exact_drag, exact_fall
 from examples.validation.results import published, read_curve
 from examples.validation.tencate import Experiment
+from examples.validation.walls import brenner
 
 STYLE = {"axes.spines.top": False, "axes.spines.right": False, "font.size": 9, "legend.frameon": False}
 BLUE, ORANGE = "#0072B2", "#D55E00"
@@ -61,6 +63,42 @@ def draw_oscillation() -> Figure:
         )
         axis.set(xlabel="time / period", ylabel="2 F / (rho U² d)")
         axis.legend()
+    return figure
+
+
+def draw_towed() -> Figure:
+    """Drag of towed spheres from step to step."""
+    with plt.rc_context(STYLE):
+        figure, axis = plt.subplots(figsize=(5.2, 2.6), layout="constrained")
+        for courant, color in ((0.25, BLUE), (0.1, ORANGE)):
+            curve = read_curve(f"towed-{courant}")
+            axis.plot(
+                curve["way"], curve["K"], ".-", color=color, linewidth=0.8, markersize=4, label=f"{courant}"
+            )
+        axis.axhline(exact_drag(0.064), color="0.6", linewidth=0.8)
+        axis.annotate("exact", (0, exact_drag(0.064)), (2, -12), textcoords="offset points", color="0.4")
+        axis.set(xlabel="way / spacing", ylabel="K", ylim=(2.79, 2.82))
+        axis.legend(title="Courant number", ncols=2)
+    return figure
+
+
+def draw_slow_motion() -> Figure:
+    """Drag of a sphere near a plane, and velocity of spheres that fall from rest."""
+    with plt.rc_context(STYLE):
+        figure, axes = plt.subplots(1, 2, figsize=(7.6, 2.8), layout="constrained")
+        plane = read_curve("plane")
+        axes[0].plot(plane["gap"], plane["K"], color=BLUE, label="found")
+        exact = [brenner(gap) for gap in plane["gap"]]
+        axes[0].plot(plane["gap"], exact, color=ORANGE, linestyle="--", label="exact")
+        axes[0].set(xlabel="gap / radius", ylabel="K", xlim=(0.5, 2))
+        for ratio, color in ((1.5, BLUE), (7.8, ORANGE)):
+            fall = read_curve(f"fall-{ratio}")
+            axes[1].plot(fall["time"], fall["velocity"], color=color, label=f"density ratio {ratio}")
+            exact = [exact_fall(ratio, time) for time in FALL_TIMES]
+            axes[1].plot([float(time) for time in FALL_TIMES], exact, "o", color=color, fillstyle="none")
+        axes[1].set(xlabel="time nu / a²", ylabel="velocity / that of Stokes' law")
+        for axis in axes:
+            axis.legend()
     return figure
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import dataclasses
 import pathlib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 
 import numpy as np
 
@@ -66,6 +66,16 @@ def orders(errors: Sequence[float], factor: float = 2) -> np.ndarray:
     """Observed orders between successive refinements by factor."""
     errors = np.abs(np.asarray(errors, dtype=float))
     return np.log(errors[:-1] / errors[1:]) / np.log(factor)
+
+
+def with_order(
+    compare: Callable[[int], Sequence[Row]], resolutions: tuple[int, int], least_order: float | None = None
+) -> list[Row]:
+    """The rows of the finer resolution, with the order of all of them together, in units of their targets."""
+    coarse, fine = (compare(resolution) for resolution in resolutions)
+    sizes = [float(np.linalg.norm([row.error / row.target for row in rows])) for rows in (coarse, fine)]
+    order = float(orders(sizes, resolutions[1] / resolutions[0])[0])
+    return [dataclasses.replace(row, order=order, least_order=least_order) for row in fine]
 
 
 def write(rows: Iterable[Row], path: pathlib.Path = RECORD) -> None:

@@ -7,7 +7,6 @@ sides are planes of symmetry through the centre, and forces along z are multipli
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Sequence
 
 import numpy as np
 from peclet.core.geom import SceneBuilder
@@ -99,22 +98,21 @@ def brenner(gap: float) -> float:
 
 
 def drag_towards_plane(
-    radius: float, width: int, gaps: Sequence[float], *, reynolds: float = 0.02, steps: int = 4
-) -> np.ndarray:
-    """K at these gaps, in descending order and in radii, of a sphere that slowly approaches the floor."""
+    radius: float, width: int, first: float, last: float, *, reynolds: float = 0.02, steps: int = 4
+) -> tuple[np.ndarray, np.ndarray]:
+    """Ascending gaps in radii that cover first >= gap >= last, and K of a sphere that nears the floor."""
     mu = 1.0
     speed = reynolds * mu / (2 * radius)
     dt = 1 / (speed * steps)  # a cell in so many steps
-    start = radius * (1 + gaps[0]) + 2
+    start = radius * (1 + first) + 2
     box = SphereInBox((width, width, width), radius, start, sides="slip", ends=("wall", "slip"), mu=mu, dt=dt)
     heights, forces = [], []
-    while not heights or heights[-1] > radius * (1 + gaps[-1]) - 0.5:
+    while not heights or heights[-1] > radius * (1 + last) - 0.5:
         heights.append((heights[-1] if heights else start) - speed * dt)
         box.place(heights[-1], -speed)
         forces.append(box.step())
-    wanted = radius * (1 + np.asarray(gaps))
     drags = np.array(forces) / (6 * np.pi * mu * radius * speed)
-    return np.interp(wanted, heights[::-1], drags[::-1])
+    return np.array(heights[::-1]) / radius - 1, drags[::-1]
 
 
 def oscillation(
