@@ -1,7 +1,8 @@
 """Time of one coupled step of drafting, kissing and tumbling, its parts, and the reference beside it.
 
-Both run tests/validation/compatible_script.py, one after the other. GB/s: bytes that a part cannot avoid to
-move, every array read or written once per pass over the grid, over its time.
+Both run tests/validation/compatible_script.py, round after round in turn, and the fastest round of each
+counts: other users of the machine make them slower, nothing makes them faster. GB/s: bytes that a part cannot
+avoid to move, every array read or written once per pass over the grid, over its time.
 """
 
 import argparse
@@ -61,14 +62,25 @@ def measure(resolution: int, steps: int) -> dict:
     }
 
 
+def fastest(rounds: list[dict]) -> dict:
+    """The round whose step took the least time."""
+    return min(rounds, key=lambda found: found["seconds"])
+
+
 def tabulate(options: argparse.Namespace) -> harness.Table:
     """Ratio, whole step, parts."""
     table = harness.Table("coupled_step", (*harness.QUANTITIES, "share", "GB/s", "of copy"))
-    ours = harness.run_child(__file__, {"resolution": options.resolution, "steps": options.steps})
+    task = {"resolution": options.resolution, "steps": options.steps}
+    reference_task = task | {"steps": max(2, options.steps // 10)}
+    rounds, reference_rounds = [], []
+    for _ in range(options.rounds):
+        rounds.append(harness.run_child(__file__, task))
+        if options.reference:
+            reference_rounds.append(harness.run_child(__file__, reference_task, python=options.reference))
+    ours = fastest(rounds)
     cells, seconds = ours["cells"], ours["seconds"]
     if options.reference:
-        task = {"resolution": options.resolution, "steps": max(2, options.steps // 10)}
-        theirs = harness.run_child(__file__, task, python=options.reference)
+        theirs = fastest(reference_rounds)
         table.add("reference / ours", theirs["seconds"] / seconds, "", ">= 75")
         table.add("step of the reference", theirs["seconds"], "s")
         table.add("process peak of the reference", theirs["peak"] / cells, "B/cell")
@@ -95,6 +107,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     """Cells per diameter and number of steps."""
     parser.add_argument("--resolution", type=int, choices=(6, 8, 12), default=12)
     parser.add_argument("--steps", type=int, default=20)
+    parser.add_argument("--rounds", type=int, default=3)
     harness.add_reference(parser)
 
 
