@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import operator
+import sys
 from collections.abc import Mapping, Sequence
 from typing import Any, TypeVar
 
@@ -75,9 +76,9 @@ def finite(value: Any, name: str) -> float:
 
 
 def positive(value: Any, name: str) -> float:
-    """A finite number above zero."""
+    """A finite number above zero, whose inverse is finite too."""
     number = finite(value, name)
-    if number <= 0:
+    if number < sys.float_info.min:
         raise wrong_value(name, "a positive number", number)
     return number
 

@@ -48,6 +48,7 @@ ZEROS = field()
 # call, arguments, error, start of the message
 REFUSED = [
     ("set_rho", (0,), ValueError, "rho: expected a positive number, found 0"),
+    ("set_rho", (1e-320,), ValueError, "rho: expected a positive number, found 1e-320"),
     ("set_rho", (-1.0,), ValueError, "rho: "),
     ("set_rho", (NAN,), ValueError, "rho: expected a finite number, found nan"),
     ("set_rho", (INF,), ValueError, "rho: "),
