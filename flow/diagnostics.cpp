@@ -13,7 +13,9 @@ Real largest_component(const RowRanges& rows, const FaceVector<Real>& velocity) 
       });
 }
 
-Real largest_courant_rate(const RowRanges& rows, const FaceVector<Real>& velocity, const Real3& spacing) {
+Real largest_courant_rate(const RowRanges& rows, const FaceVector<OpenFraction>& open,
+                          const FaceVector<Real>& velocity, const Real3& spacing, bool count_slits) {
+  const FaceVector<OpenFraction> o = open;
   const FaceVector<Real> u = velocity;
   const Real3 h = spacing;
   return max_cells(
@@ -21,7 +23,9 @@ Real largest_courant_rate(const RowRanges& rows, const FaceVector<Real>& velocit
         const Index p = u.x.layout()(i, j, k);
         Real rate = 0;
         for (int a = 0; a < 3; ++a) {
-          const Real low = Kokkos::abs(u[a][p]), high = Kokkos::abs(u[a][p + u.x.layout().stride(a)]);
+          const Index next = p + u.x.layout().stride(a);
+          const Real low = count_slits || !is_slit(o[a][p]) ? Kokkos::abs(u[a][p]) : 0.0;
+          const Real high = count_slits || !is_slit(o[a][next]) ? Kokkos::abs(u[a][next]) : 0.0;
           rate += (low > high ? low : high) / h[a];
         }
         return rate;

@@ -9,8 +9,10 @@ namespace peclet::flow {
 
 Real largest_component(const RowRanges& rows, const FaceVector<Real>& velocity);
 
-/// Largest over the cells of sum_a |u_a| / h_a, the larger of both faces along each axis.
-Real largest_courant_rate(const RowRanges& rows, const FaceVector<Real>& velocity, const Real3& spacing);
+/// Largest over the cells of sum_a |u_a| / h_a, the larger of both faces along each axis. What flows through
+/// slits carries scalars but no momentum.
+Real largest_courant_rate(const RowRanges& rows, const FaceVector<OpenFraction>& open,
+                          const FaceVector<Real>& velocity, const Real3& spacing, bool count_slits);
 
 /// velocity = 0 at solid points.
 void mask_solid_points(const RowRanges& whole, const FaceVector<OpenFraction>& open,

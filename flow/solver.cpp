@@ -296,7 +296,8 @@ Vec3 Solver::momentum_change() const {
 }
 
 Real Solver::courant_number() const {
-  return settings_.time_step * largest_courant_rate(boundary_.rows(), velocity_, grid_.spacing);
+  return settings_.time_step * largest_courant_rate(boundary_.rows(), boundary_.open(), velocity_,
+                                                    grid_.spacing, scalars_.count() > 0);
 }
 
 void Solver::require_balanced_inflow(Real velocity_scale) const {

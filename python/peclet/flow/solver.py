@@ -206,6 +206,9 @@ class Solver(Parameters, Boundaries, Geometry, Fields, Scalars, Instruments):
     def courant_number(self) -> float:
         """Largest of dt sum |u_a| / h_a over the cells, with the present velocity and dt.
 
+        What squeezes through faces whose centre is solid carries no momentum: it counts where there are
+        scalars only.
+
         step() warns where this exceeds the limit: 0.25 for 'sou' and 0.5 for 'koren' and 'central' where
         advection is explicit; none where it is implicit, but 0.5 for scalars, which always are explicit.
         """
