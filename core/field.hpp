@@ -3,6 +3,7 @@
 #include <string>
 
 #include "core/grid.hpp"
+#include "core/large_pages.hpp"
 #include "core/types.hpp"
 
 namespace peclet {
@@ -13,7 +14,8 @@ class Field {
  public:
   Field() = default;
   /// Zero everywhere, ghosts included.
-  Field(const std::string& name, const Layout& layout) : layout_(layout), data_(name, layout.size) {}
+  Field(const std::string& name, const Layout& layout)
+      : layout_(layout), data_(array_in_large_pages<T>(name, layout.size)) {}
 
   KOKKOS_INLINE_FUNCTION T& operator()(int i, int j, int k) const { return data_.data()[layout_(i, j, k)]; }
   KOKKOS_INLINE_FUNCTION T& operator[](Index n) const { return data_.data()[n]; }
