@@ -35,6 +35,11 @@ struct Norms {
 /// and the low ghosts of the next row), and what it returns for them does not count.
 inline constexpr int vector_length = Layout::alignment;
 
+/// A row may know a shorter way for the cells of a whole vector, plain(i), where is_plain(i) holds for the
+/// first of them: the same as operator() but for rounding.
+template <class Row>
+inline constexpr bool has_plain_vectors = requires(const Row& row) { row.is_plain(0); };
+
 namespace detail {
 
 /// Reductions are carried in one accumulator per vector lane: over a row in the arithmetic of the body, over
@@ -138,6 +143,31 @@ struct OnRows {
 
 namespace detail {
 
+/// The cells of the vector that begins at i; values get what cell returns, if anything.
+template <class Row, class T>
+inline void run_vector(const Row& cell, int i, T* values) {
+  constexpr bool returns = !std::is_void_v<T>;
+  if constexpr (has_plain_vectors<Row>) {
+    if (cell.is_plain(i)) {
+#pragma omp simd
+      for (int lane = 0; lane < vector_length; ++lane) {
+        if constexpr (returns)
+          values[lane] = cell.plain(i + lane);
+        else
+          cell.plain(i + lane);
+      }
+      return;
+    }
+  }
+#pragma omp simd
+  for (int lane = 0; lane < vector_length; ++lane) {
+    if constexpr (returns)
+      values[lane] = cell(i + lane);
+    else
+      cell(i + lane);
+  }
+}
+
 template <class Body>
 void run_row(const Body& body, int first, int last, int j, int k, bool may_overrun,
              Lanes<typename Body::Result>& plane) {
@@ -147,18 +177,15 @@ void run_row(const Body& body, int first, int last, int j, int k, bool may_overr
   const auto cell = body.row(j, k);
   int i = first;
   if constexpr (std::is_same_v<Result, Nothing>) {
-    for (; i + vector_length <= last || (overruns && i < last); i += vector_length) {
-#pragma omp simd
-      for (int lane = 0; lane < vector_length; ++lane) cell(i + lane);
-    }
+    for (; i + vector_length <= last || (overruns && i < last); i += vector_length)
+      run_vector<decltype(cell), void>(cell, i, nullptr);
     for (; i < last; ++i) cell(i);
   } else {
     using T = decltype(cell(0));
     RowLanes<Result, T> sums;
     T values[vector_length];
     for (; i + vector_length <= last; i += vector_length) {
-#pragma omp simd
-      for (int lane = 0; lane < vector_length; ++lane) values[lane] = cell(i + lane);
+      run_vector(cell, i, values);
       sums.add(values);
     }
     if (i < last) {

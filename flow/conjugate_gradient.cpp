@@ -47,6 +47,12 @@ struct TrueResidual {
       if (!open) phi.centre[i] = 0;
       return r;
     }
+    KOKKOS_INLINE_FUNCTION bool is_plain(int i) const { return c.is_open_vector(i); }
+    KOKKOS_INLINE_FUNCTION Real plain(int i) const {
+      const Real r = c.open.laplacian(phi, i) - (rhs[i] - mean);
+      residual[i] = static_cast<float>(r * scale);
+      return r;
+    }
   };
   KOKKOS_INLINE_FUNCTION Row row(int j, int k) const {
     const Index n = op.shape.layout(0, j, k);
@@ -86,6 +92,8 @@ struct Energy {
     CoefficientRow<OpenFraction, float> c;
     NeighbourRows<float> search;
     KOKKOS_INLINE_FUNCTION float operator()(int i) const { return c.energy(search, i); }
+    KOKKOS_INLINE_FUNCTION bool is_plain(int i) const { return c.is_open_vector(i); }
+    KOKKOS_INLINE_FUNCTION float plain(int i) const { return c.open.energy(search, i); }
   };
   KOKKOS_INLINE_FUNCTION Row row(int j, int k) const {
     return {op.row<float>(j, k), neighbour_rows(op.shape, search, j, k)};
@@ -110,12 +118,16 @@ struct Advance {
     Real* phi;
     float step;
     Real phi_step;
-    KOKKOS_INLINE_FUNCTION float operator()(int i) const {
-      const float r = residual[i] + step * c.laplacian(search, i);
+    template <class Coefficients>
+    KOKKOS_INLINE_FUNCTION float treat(const Coefficients& coefficients, int i) const {
+      const float r = residual[i] + step * coefficients.laplacian(search, i);
       residual[i] = r;
       phi[i] += phi_step * static_cast<Real>(search.centre[i]);
       return r;
     }
+    KOKKOS_INLINE_FUNCTION float operator()(int i) const { return treat(c, i); }
+    KOKKOS_INLINE_FUNCTION bool is_plain(int i) const { return c.is_open_vector(i); }
+    KOKKOS_INLINE_FUNCTION float plain(int i) const { return treat(c.open, i); }
   };
   KOKKOS_INLINE_FUNCTION Row row(int j, int k) const {
     const Index n = op.shape.layout(0, j, k);

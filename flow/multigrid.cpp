@@ -162,6 +162,11 @@ void BasicMultigrid<reactive>::set_open_fractions(const FaceVector<OpenFraction>
     finest_ = ReactiveOperator<OpenFraction>(levels[0].shape, open, weights_, reaction);
   else
     finest_ = LevelOperator<OpenFraction>(levels[0].shape, open, weights_);
+  if constexpr (runs_on_host && !reactive) {
+    if (!open_vectors_.data())
+      open_vectors_ = Array<unsigned char>("open_vectors", levels[0].shape.layout.size / Layout::alignment);
+    finest_.open_vectors = open_vectors_.data();
+  }
   levels[0].rows = aligned_rows(rows, levels[0].shape);
   levels[0].plan = plan_of(levels[0].shape, levels[0].rows, levels[0].transfer);
   clear(levels[0].fields);
@@ -220,6 +225,15 @@ void BasicMultigrid<reactive>::add_group() {
 template <bool reactive>
 void BasicMultigrid<reactive>::update(const std::vector<Box>& changed) {
   const std::vector<Box> pieces = pieces_inside(finest_level().shape, changed);
+  if (finest_.open_vectors) {
+    std::vector<Box> vectors = pieces;
+    for (Box& box : vectors) {
+      box.low[0] = box.low[0] / Layout::alignment;
+      box.high[0] = (box.high[0] - 1) / Layout::alignment + 1;
+    }
+    changed_.assign(vectors);
+    mark_open_vectors(finest_, changed_, open_vectors_);
+  }
   for (int g = 0; g < number_of_groups(); ++g) {
     derive(g, number_of_groups() == 1 ? pieces : std::vector<Box>{groups_[g].rows.box});
     set_coarse_operator(groups_[g]);
@@ -308,7 +322,7 @@ Real BasicMultigrid<reactive>::apply_by_groups() const {
 
 template <bool reactive>
 std::size_t BasicMultigrid<reactive>::bytes() const {
-  std::size_t total = 0;
+  std::size_t total = open_vectors_.span();
   for (int g = 0; g < number_of_groups(); ++g) {
     total += groups_[g].coarse_solver.bytes();
     for (std::size_t l = g == 0 ? 0 : 1; l < groups_[g].levels.size(); ++l) {

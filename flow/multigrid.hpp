@@ -83,6 +83,7 @@ class BasicMultigrid {
   Real stiffness_ = 1;
   Operator<OpenFraction> finest_;
   FaceVector<OpenFraction> open_;
+  Array<unsigned char> open_vectors_;  // on the host, without a reaction
   std::vector<Group> groups_;
   Field<unsigned char> group_;  // of each finest cell
   BoxList changed_;             // of one level

@@ -61,6 +61,23 @@ template void derive_coefficients(const GroupOperator&, const LevelShape&, const
 template void derive_coefficients(const LevelOperator<float>&, const LevelShape&, const Merging&,
                                   const BoxList&, const FaceVector<float>&);
 
+void mark_open_vectors(const LevelOperator<OpenFraction>& op, const BoxList& boxes,
+                       const Array<unsigned char>& open_vectors) {
+  const LevelOperator<OpenFraction> all = op;
+  for_each_cell(
+      "flow::open_vectors", boxes, KOKKOS_LAMBDA(int vector, int j, int k) {
+        const Layout& layout = all.shape.layout;
+        const Index begin = layout(vector * vector_length, j, k);
+        // a vector that reaches beyond the row would treat padding as open cells
+        bool open = (vector + 1) * vector_length <= all.shape.cells[0];
+        for (Index n = begin; open && n < begin + vector_length; ++n)
+          open = all.x[n] == fully_open && all.x[n + 1] == fully_open && all.y[n] == fully_open &&
+                 all.y[n + layout.pitch_y] == fully_open && all.z[n] == fully_open &&
+                 all.z[n + layout.pitch_z] == fully_open;
+        open_vectors(begin / vector_length) = open;
+      });
+}
+
 void derive_reaction(const LevelShape& fine, const Field<float>& fine_reaction, const Merging& merging,
                      const BoxList& boxes, const Field<float>& coarse_reaction) {
   const Field<float> from = fine_reaction, to = coarse_reaction;

@@ -122,8 +122,8 @@ void fill_ghost_row(const T* row, T* ghost, int n) {
 }
 
 template <class T>
-KOKKOS_INLINE_FUNCTION SideRow<T> row_beside(const LevelShape& shape, T* centre, int axis, int index,
-                                             int high) {
+KOKKOS_FORCEINLINE_FUNCTION SideRow<T> row_beside(const LevelShape& shape, T* centre, int axis, int index,
+                                                  int high) {
   const Index step = high ? shape.layout.stride(axis) : -shape.layout.stride(axis);
   if (index != (high ? shape.cells[axis] - 1 : 0)) return {centre + step, T(1)};
   const PressureSide side = shape.sides.side[axis][high];
@@ -134,7 +134,7 @@ KOKKOS_INLINE_FUNCTION SideRow<T> row_beside(const LevelShape& shape, T* centre,
 }
 
 template <class T>
-KOKKOS_INLINE_FUNCTION NeighbourRows<T> neighbour_rows(const LevelShape& shape, T* field, int j, int k) {
+KOKKOS_FORCEINLINE_FUNCTION NeighbourRows<T> neighbour_rows(const LevelShape& shape, T* field, int j, int k) {
   const int n = shape.cells[0];
   T* const centre = field + shape.layout(0, j, k);
   const bool periodic = shape.sides.is_periodic(0);
@@ -157,12 +157,47 @@ KOKKOS_INLINE_FUNCTION NeighbourRows<T> neighbour_rows(const LevelShape& shape, 
   return rows;
 }
 
+/// Coefficients of cells whose faces are all open. The functions are those of CoefficientRow and round like
+/// them.
+template <class T>
+struct OpenCoefficients {
+  T x, y, z;
+
+  KOKKOS_INLINE_FUNCTION T diagonal(int) const { return 2 * x + 2 * y + 2 * z; }
+  KOKKOS_INLINE_FUNCTION T neighbours(const NeighbourRows<T>& phi, int i) const {
+    return x * (phi.west(i) + phi.east(i)) + y * (phi.south(i) + phi.north(i)) +
+           z * (phi.below(i) + phi.above(i));
+  }
+  KOKKOS_INLINE_FUNCTION T laplacian(const NeighbourRows<T>& phi, int i) const {
+    const T c = phi.centre[i];
+    return x * ((phi.east(i) - c) - (c - phi.west(i))) + y * ((phi.north(i) - c) - (c - phi.south(i))) +
+           z * ((phi.above(i) - c) - (c - phi.below(i)));
+  }
+  KOKKOS_INLINE_FUNCTION T energy(const NeighbourRows<T>& phi, int i) const {
+    const T c = phi.centre[i];
+    const T w = c - phi.west(i), e = c - phi.east(i), s = c - phi.south(i), n = c - phi.north(i),
+            b = c - phi.below(i), a = c - phi.above(i);
+    return T(0.5) * (x * (w * w + e * e) + y * (s * s + n * n) + z * (b * b + a * a));
+  }
+};
+
 /// Coefficients of the six faces of the cells of a row, in arithmetic T.
 template <class Coefficient, class T>
 struct CoefficientRow {
   const Coefficient *x, *south, *north, *below, *above;
   T weight_x, weight_y, weight_z;
   Coefficient used_x, used_y, used_z;  ///< all bits of an integer where the weight is not zero
+  const unsigned char* open_vectors;   ///< of the row; none on a device
+  OpenCoefficients<T> open;
+
+  /// Whether all faces of the cells of the vector that begins at i, a multiple of its length, are open, so
+  /// that `open` is theirs.
+  KOKKOS_INLINE_FUNCTION bool is_open_vector(int i) const {
+    if constexpr (std::is_integral_v<Coefficient>)
+      return open_vectors && open_vectors[i / Layout::alignment];
+    else
+      return false;
+  }
 
   /// Sum of the six coefficients; 0 for a cell without an open face, and only there.
   KOKKOS_INLINE_FUNCTION T diagonal(int i) const {
@@ -209,6 +244,7 @@ struct LevelOperator {
   LevelShape shape;
   const Coefficient *x = nullptr, *y = nullptr, *z = nullptr;
   Real weight[3] = {1, 1, 1};
+  const unsigned char* open_vectors = nullptr;  ///< set by mark_open_vectors; may be missing
 
   LevelOperator() = default;
   LevelOperator(const LevelShape& level, const FaceVector<Coefficient>& faces, const Real3& weights)
@@ -217,19 +253,23 @@ struct LevelOperator {
   }
 
   template <class T>
-  KOKKOS_INLINE_FUNCTION CoefficientRow<Coefficient, T> row(int j, int k) const {
+  KOKKOS_FORCEINLINE_FUNCTION CoefficientRow<Coefficient, T> row(int j, int k) const {
     const Index n = shape.layout(0, j, k);
+    const T wx = static_cast<T>(weight[0]), wy = static_cast<T>(weight[1]), wz = static_cast<T>(weight[2]);
+    constexpr T whole = fully_open;
     return {x + n,
             y + n,
             y + n + shape.layout.pitch_y,
             z + n,
             z + n + shape.layout.pitch_z,
-            static_cast<T>(weight[0]),
-            static_cast<T>(weight[1]),
-            static_cast<T>(weight[2]),
+            wx,
+            wy,
+            wz,
             used(0),
             used(1),
-            used(2)};
+            used(2),
+            open_vectors ? open_vectors + n / Layout::alignment : nullptr,
+            {whole * wx, whole * wy, whole * wz}};
   }
   KOKKOS_INLINE_FUNCTION Coefficient used(int axis) const {
     return static_cast<Coefficient>(weight[axis] > 0 ? -1 : 0);
@@ -250,6 +290,7 @@ template <class Coefficient, class T>
 struct ReactiveRow : CoefficientRow<Coefficient, T> {
   const float* reaction;
 
+  KOKKOS_INLINE_FUNCTION static bool is_open_vector(int) { return false; }
   KOKKOS_INLINE_FUNCTION T diagonal(int i) const {
     return CoefficientRow<Coefficient, T>::diagonal(i) + reaction[i];
   }
@@ -284,6 +325,10 @@ RowRanges aligned_rows(const RowRanges& rows, const LevelShape& shape);
 template <class Operator>
 void derive_coefficients(const Operator& fine, const LevelShape& coarse, const Merging& merging,
                          const BoxList& boxes, const FaceVector<float>& coefficients);
+
+/// Marks the vectors of cells whose faces are all open. The boxes count vectors along x, cells along y and z.
+void mark_open_vectors(const LevelOperator<OpenFraction>& op, const BoxList& boxes,
+                       const Array<unsigned char>& open_vectors);
 
 /// Coarse reaction of the cells of the boxes: the sum over the children.
 void derive_reaction(const LevelShape& fine, const Field<float>& fine_reaction, const Merging& merging,

@@ -94,6 +94,7 @@ void PressureSolver::set_open_fractions(const FaceVector<OpenFraction>& open, co
   parts_->multigrid.set_open_fractions(open, rows);
   parts_->physical_operator =
       LevelOperator<OpenFraction>(parts_->multigrid.finest_operator().shape, open, weights);
+  parts_->physical_operator.open_vectors = parts_->multigrid.finest_operator().open_vectors;
   parts_->regions.find(parts_->multigrid.finest_operator());
   parts_->part_regions();
   parts_->search.fill(0);

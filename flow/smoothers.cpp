@@ -30,6 +30,10 @@ struct FirstStep {
     KOKKOS_INLINE_FUNCTION void operator()(int i) const {
       out[i] = relaxed(0, weight, rhs[i], c.diagonal(i));
     }
+    KOKKOS_INLINE_FUNCTION bool is_plain(int i) const { return c.is_open_vector(i); }
+    KOKKOS_INLINE_FUNCTION void plain(int i) const {
+      out[i] = relaxed(0, weight, rhs[i], c.open.diagonal(i));
+    }
   };
   KOKKOS_INLINE_FUNCTION Row row(int j, int k) const {
     const Index n = op.shape.layout(0, j, k);
@@ -54,11 +58,16 @@ struct JacobiStep {
     const float* rhs;
     float* out;
     float weight;
-    KOKKOS_INLINE_FUNCTION auto operator()(int i) const {
-      const float value = relaxed(in.centre[i], weight, rhs[i] + c.neighbours(in, i), c.diagonal(i));
+    template <class Coefficients>
+    KOKKOS_INLINE_FUNCTION auto treat(const Coefficients& coefficients, int i) const {
+      const float target = rhs[i] + coefficients.neighbours(in, i);
+      const float value = relaxed(in.centre[i], weight, target, coefficients.diagonal(i));
       out[i] = value;
       if constexpr (std::is_same_v<Reduction, Total>) return value * rhs[i];
     }
+    KOKKOS_INLINE_FUNCTION auto operator()(int i) const { return treat(c, i); }
+    KOKKOS_INLINE_FUNCTION bool is_plain(int i) const { return c.is_open_vector(i); }
+    KOKKOS_INLINE_FUNCTION auto plain(int i) const { return treat(c.open, i); }
   };
   KOKKOS_INLINE_FUNCTION Row row(int j, int k) const {
     const Index n = op.shape.layout(0, j, k);
@@ -82,6 +91,8 @@ struct Residual {
     const float* rhs;
     float* out;
     KOKKOS_INLINE_FUNCTION void operator()(int i) const { out[i] = rhs[i] + c.laplacian(in, i); }
+    KOKKOS_INLINE_FUNCTION bool is_plain(int i) const { return c.is_open_vector(i); }
+    KOKKOS_INLINE_FUNCTION void plain(int i) const { out[i] = rhs[i] + c.open.laplacian(in, i); }
   };
   KOKKOS_INLINE_FUNCTION Row row(int j, int k) const {
     const Index n = op.shape.layout(0, j, k);

@@ -223,6 +223,57 @@ TEST(Sweep, PartsOfAStageFollowEachOther) {
   EXPECT_EQ(field(3, 2, 3), 3);
 }
 
+/// Counts the cells that are treated in the way of their vector.
+struct CountInEitherWay {
+  using Result = Total;
+  static constexpr bool may_overrun = false;
+  Layout layout;
+  Real *plain_cells, *other_cells;
+
+  KOKKOS_INLINE_FUNCTION static bool is_plain(int i, int j, int k) {
+    return (i / vector_length + j + 2 * k) % 3 == 0;
+  }
+  struct Row {
+    Real *plain_cells, *other_cells;
+    int j, k;
+    KOKKOS_INLINE_FUNCTION Real operator()(int i) const {
+      other_cells[i] += 1;
+      return 1;
+    }
+    KOKKOS_INLINE_FUNCTION bool is_plain(int i) const { return CountInEitherWay::is_plain(i, j, k); }
+    KOKKOS_INLINE_FUNCTION Real plain(int i) const {
+      plain_cells[i] += 1;
+      return 1000;
+    }
+  };
+  KOKKOS_INLINE_FUNCTION Row row(int j, int k) const {
+    return {plain_cells + layout(0, j, k), other_cells + layout(0, j, k), j, k};
+  }
+};
+
+TEST(Sweep, TreatsWholeVectorsInThePlainWayWhereTheRowAllowsIt) {
+  if (!runs_on_host) GTEST_SKIP() << "no vectors";
+  for (const Int3& n : {Int3{5, 4, 3}, Int3{48, 7, 5}, Int3{75, 21, 33}}) {
+    const Layout layout(n);
+    const Field<Real> plain_cells("plain", layout), other_cells("other", layout);
+    const bool wraps[3] = {true, true, true};
+    const Total total =
+        sweep("test", SweepPlan(n, Box{{0, 0, 0}, n}, wraps),
+              Stage{RowRanges(n), CountInEitherWay{layout, plain_cells.data(), other_cells.data()}});
+    Real sum = 0;
+    for (int k = 0; k < n[2]; ++k)
+      for (int j = 0; j < n[1]; ++j)
+        for (int i = 0; i < n[0]; ++i) {
+          const bool in_whole_vector = i / vector_length < n[0] / vector_length;
+          const bool is_plain = in_whole_vector && CountInEitherWay::is_plain(i, j, k);
+          ASSERT_EQ(plain_cells(i, j, k), is_plain);
+          ASSERT_EQ(other_cells(i, j, k), !is_plain);
+          sum += is_plain ? 1000 : 1;
+        }
+    EXPECT_EQ(total.sum, sum);
+  }
+}
+
 TEST(Sweep, PaddingDoesNotEnterNorms) {
   const Int3 n{21, 5, 6};
   const Field<Real> field("field", Layout(n));

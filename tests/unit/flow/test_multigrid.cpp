@@ -97,5 +97,63 @@ TEST(Multigrid, ResultDoesNotDependOnWhatWasThereBefore) {
   for_cells(n, [&](int i, int j, int k) { EXPECT_EQ(first(i, j, k), second(i, j, k)); });
 }
 
+/// All marks are what the fractions say.
+void expect_marks(const LevelOperator<OpenFraction>& op, const FaceVector<OpenFraction>& open) {
+  const Layout& layout = open.x.layout();
+  for_cells(layout.cells, [&](int first, int j, int k) {
+    if (first % Layout::alignment != 0) return;
+    bool expected = first + Layout::alignment <= layout.cells[0];
+    for (int i = first; expected && i < first + Layout::alignment; ++i)
+      for (int axis = 0; axis < 3; ++axis)
+        for (const Index step : {Index{0}, layout.stride(axis)})
+          expected = expected && open[axis][layout(i, j, k) + step] == fully_open;
+    ASSERT_EQ(op.row<float>(j, k).is_open_vector(first), expected) << first << " " << j << " " << k;
+  });
+}
+
+TEST(Multigrid, MarksOfOpenVectorsFollowTheFractions) {
+  if (!runs_on_host) GTEST_SKIP() << "no marks";
+  for (const PressureSide side : {PressureSide::Periodic, PressureSide::Closed, PressureSide::Fixed}) {
+    const Int3 n{75, 26, 22};
+    PressureSides sides;
+    for (auto& axis : sides.side) axis[0] = axis[1] = side;
+    const bool periodic = side == PressureSide::Periodic;
+    const Box second = periodic ? Box{{38, 18, 14}, {53, 33, 29}} : Box{{38, 11, 6}, {53, 26, 21}};
+    const Vec3 centre = periodic ? Vec3{45, 25, 21} : Vec3{45, 18, 13};
+    const auto before = spheres(n, {{40, 11, 12}}, 5), after = spheres(n, {centre}, 5);
+    const auto open = make_faces(n, sides, before);
+    Multigrid multigrid(n, {1, 1, 1}, sides);
+    multigrid.set_open_fractions(open, RowRanges(n));
+    expect_marks(multigrid.finest_operator(), open);
+    const auto moved = make_faces(n, sides, after);
+    for (int axis = 0; axis < 3; ++axis) Kokkos::deep_copy(open[axis].array(), moved[axis].array());
+    multigrid.update({Box{{33, 4, 5}, {48, 19, 20}}, second});
+    expect_marks(multigrid.finest_operator(), open);
+  }
+}
+
+TEST(Multigrid, OpenVectorsAreSmoothedLikeAnyOthersButForRounding) {
+  const Int3 n{75, 26, 22};
+  const auto open = make_faces(n, PressureSides(), spheres(n, {{40, 11, 12}}, 5));
+  Multigrid multigrid(n, {1, 1.2, 0.9}, PressureSides());
+  multigrid.set_open_fractions(open, RowRanges(n));
+  const Field<Real> vector = random_field(n, 38);
+  const auto smoothed = [&](bool with_marks) {
+    LevelOperator<OpenFraction> op = multigrid.finest_operator();
+    if (!with_marks) op.open_vectors = nullptr;
+    const Layout layout(n);
+    const LevelFields fields{{"rhs", layout}, {"solution", layout}, {"scratch", layout}};
+    for_cells(n, [&](int i, int j, int k) {
+      fields.rhs(i, j, k) = is_open_cell(open, i, j, k) ? static_cast<float>(vector(i, j, k)) : 0;
+    });
+    smooth_from_zero(op, multigrid.plan(), multigrid.rows(), fields);
+    smooth(op, multigrid.plan(), multigrid.rows(), fields);
+    return fields.solution;
+  };
+  const Field<float> found = smoothed(true), expected = smoothed(false);
+  // values of order one, a few dozen roundings of single precision
+  for_cells(n, [&](int i, int j, int k) { EXPECT_NEAR(found(i, j, k), expected(i, j, k), 3e-6); });
+}
+
 }  // namespace
 }  // namespace peclet::flow
