@@ -37,6 +37,11 @@ bool is_at_rest(const Twist& twist) {
   return dot(twist.linear, twist.linear) == 0 && dot(twist.angular, twist.angular) == 0;
 }
 
+bool same(Vec3 a, Vec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
+bool same(const Twist& a, const Twist& b) {
+  return same(a.linear, b.linear) && same(a.angular, b.angular);
+}
+
 }  // namespace
 
 Bodies::Bodies(const Scene& scene, const Grid& grid, bool periodic_images, const Periodicity& domain)
@@ -48,13 +53,14 @@ Bodies::Bodies(const Scene& scene, const Grid& grid, bool periodic_images, const
     body.slot = static_cast<int>(found - roots.begin());
     if (found == roots.end()) roots.push_back(instance.root);
     body.pose = instance.pose;
-    body.twist = instance.twist;
+    body.twist = body.mean_twist = instance.twist;
     body.center = instance.center_pinned ? instance.center : instance.pose.translation;
     const Scene::Bounds bounds = scene.bounds(instance.root);
     body.local_low = bounds.low;
     body.local_high = bounds.high;
     body.dynamic = !is_at_rest(instance.twist);
     bodies_.push_back(body);
+    former_twists_.push_back(instance.twist);
     pinned_.push_back(instance.center_pinned);
   }
   geometry_.program = SceneProgram(scene, roots);
@@ -153,6 +159,27 @@ void Bodies::set_twist(int b, Twist twist) {
   stale_ = true;
 }
 
+bool Bodies::any_accelerates() const {
+  for (std::size_t b = 0; b < bodies_.size(); ++b)
+    if (!same(bodies_[b].twist, former_twists_[b])) return true;
+  return false;
+}
+
+void Bodies::average_twists(Real weight) {
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const Twist &now = bodies_[b].twist, &former = former_twists_[b];
+    bodies_[b].mean_twist = same(now, former)
+                                ? now
+                                : Twist{former.linear + weight * (now.linear - former.linear),
+                                        former.angular + weight * (now.angular - former.angular)};
+  }
+  stale_ = true;
+}
+
+void Bodies::end_step() {
+  for (std::size_t b = 0; b < bodies_.size(); ++b) former_twists_[b] = bodies_[b].twist;
+}
+
 void Bodies::pin_center(int b, Vec3 center) {
   Body& body = bodies_[static_cast<std::size_t>(b)];
   body.center = center;
@@ -167,24 +194,25 @@ void Bodies::set_dynamic(int b) {
 }
 
 bool BodyMotion::operator==(const BodyMotion& other) const {
-  const auto same = [](Vec3 a, Vec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; };
   const Quaternion q = pose.rotation, r = other.pose.rotation;
   return same(pose.translation, other.pose.translation) && q.x == r.x && q.y == r.y && q.z == r.z &&
-         q.w == r.w && pose.scale == other.pose.scale && same(twist.linear, other.twist.linear) &&
-         same(twist.angular, other.twist.angular) && same(center, other.center) && pinned == other.pinned &&
+         q.w == r.w && pose.scale == other.pose.scale && same(twist, other.twist) &&
+         same(former_twist, other.former_twist) && same(center, other.center) && pinned == other.pinned &&
          dynamic == other.dynamic;
 }
 
 BodyMotion Bodies::motion(int b) const {
   const Body& body = (*this)[b];
-  return {body.pose, body.twist, body.center, center_pinned(b), body.dynamic};
+  return {body.pose,   body.twist,       former_twists_[static_cast<std::size_t>(b)],
+          body.center, center_pinned(b), body.dynamic};
 }
 
 void Bodies::restore(int b, const BodyMotion& motion) {
   const auto n = static_cast<std::size_t>(b);
   Body& body = bodies_[n];
   body.pose = motion.pose;
-  body.twist = motion.twist;
+  body.twist = body.mean_twist = motion.twist;
+  former_twists_[n] = motion.former_twist;
   body.center = motion.center;
   body.dynamic = motion.dynamic;
   pinned_[n] = motion.pinned;

@@ -14,7 +14,8 @@ namespace peclet::flow {
 struct Body {
   int slot = 0;
   Pose pose;
-  Twist twist;
+  Twist twist;                 // at the end of the step
+  Twist mean_twist;            // over the step, see Bodies::average_twists()
   Vec3 center;                 // of rotation
   Vec3 middle, lever;          // of the bounds, and from the centre (its nearest image) to there
   Vec3 local_low, local_high;  // bounds in the frame of the root
@@ -44,6 +45,9 @@ struct Period {
 /// Owners of cells: instances count from 0.
 inline constexpr int no_owner = -1;
 inline constexpr int sampled_solid = -2;  // the solid given as an array of distances
+
+/// Which motion of a body.
+enum class Motion { AtEnd, Mean };  // of the step
 
 /// Distance to bodies, callable in kernels.
 struct BodyGeometry {
@@ -101,8 +105,8 @@ struct BodyGeometry {
   }
 
   /// Velocity of the surface of body b at x: U + Omega x lever.
-  KOKKOS_INLINE_FUNCTION Vec3 velocity(int b, Vec3 x) const {
-    const Twist& twist = bodies(b).twist;
+  KOKKOS_INLINE_FUNCTION Vec3 velocity(int b, Vec3 x, Motion motion = Motion::AtEnd) const {
+    const Twist& twist = motion == Motion::AtEnd ? bodies(b).twist : bodies(b).mean_twist;
     return twist.linear + cross(twist.angular, lever(b, x));
   }
 
@@ -136,7 +140,7 @@ struct BodyGeometry {
 /// What changes of a body while a flow runs.
 struct BodyMotion {
   Pose pose;
-  Twist twist;
+  Twist twist, former_twist;  // former: at the end of the last step
   Vec3 center;
   bool pinned = false, dynamic = false;
 
@@ -163,6 +167,12 @@ class Bodies {
   /// Largest displacement of a point of body b on the way to a pose.
   Real displacement(int b, Vec3 translation, Quaternion rotation);
   void set_twist(int b, Twist twist);
+  /// Some body has another twist than at the end of the last step.
+  bool any_accelerates() const;
+  /// Mean twists of the step := former twist + weight (twist - former twist).
+  void average_twists(Real weight);
+  /// A step is over: former twist := twist.
+  void end_step();
   void pin_center(int b, Vec3 center);
   void set_dynamic(int b);
   /// All of one body's motion at once, as a checkpoint holds it.
@@ -184,6 +194,7 @@ class Bodies {
   Grid grid_;
   BodyGeometry geometry_;
   std::vector<Body> bodies_;
+  std::vector<Twist> former_twists_;
   std::vector<bool> pinned_;
   bool periodic_images_ = false, stale_ = true;
 };

@@ -31,7 +31,7 @@ struct LoadAdder {
   KOKKOS_INLINE_FUNCTION void add_spin_resistance(int chunk, int owner, int axis, Real area, Real viscosity,
                                                   Vec3 x) const {
     if (owner < 0 || !geometry.bodies(owner).spins()) return;
-    const Vec3 spin = geometry.bodies(owner).twist.angular, arm = geometry.lever(owner, x);
+    const Vec3 spin = geometry.bodies(owner).mean_twist.angular, arm = geometry.lever(owner, x);
     Vec3 normal;
     normal[axis] = area;
     add_torque(chunk, owner, viscosity * (dot(arm, spin) * normal - arm[axis] * area * spin));
@@ -64,7 +64,7 @@ void add_wall_tractions(int c, const MomentumTerms& terms, const SolidSampler& s
           const int a = d / 2, owner = w.owner(row, d);
           Vec3 wall = x;
           wall[a] += (d % 2 ? 1 : -1) * t.grid.spacing[a] * w.distance(row, d);
-          Real laplacian = w.weight(row, d) * (wall_velocity(sampler, gap, owner, c, wall) - here);
+          Real laplacian = w.weight(row, d) * (wall_velocity(sampler, gap, owner, c, wall, Motion::Mean) - here);
           if (!w.is_wall(row, d ^ 1)) {
             const Index q = d % 2 ? p - layout.stride(a) : p + layout.stride(a);
             laplacian += (w.weight(row, d ^ 1) - 1) * (v[q] + t.implicit_weight * e[q] - here);

@@ -357,8 +357,12 @@ void ImmersedBoundary::refresh_face_velocity(Bodies& bodies) {
 
 void ImmersedBoundary::refresh_velocity(Bodies& bodies) {
   refresh_face_velocity(bodies);
-  for (int c = 0; c < 3; ++c) refresh_wall_motion(c, solid_, friction_.viscosity, moving_rows_[c]);
   refresh_cut_cells(solid_, open_, sides_, near_, solid_.marks, cut_cells_);
+}
+
+void ImmersedBoundary::refresh_friction(Bodies& bodies) {
+  solid_.geometry = bodies.geometry();
+  for (int c = 0; c < 3; ++c) refresh_wall_motion(c, solid_, friction_.viscosity, moving_rows_[c]);
 }
 
 }  // namespace peclet::flow

@@ -28,6 +28,8 @@ class ImmersedBoundary {
               const Real3& hydrostatic_force = {0, 0, 0});
   /// Only the velocities of the bodies changed.
   void refresh_velocity(Bodies& bodies);
+  /// Friction follows the mean velocities of the bodies in the step: once these are known.
+  void refresh_friction(Bodies& bodies);
   /// The same for closed faces and slits alone, before a geometry update.
   void refresh_face_velocity(Bodies& bodies);
 

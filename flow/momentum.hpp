@@ -7,6 +7,10 @@
 // past, is a step of Euler's method: r = 0, theta = 1. Where the time step grows more than twofold at once, a
 // share (2 / r)^2 of the extrapolation is left, r becomes 4 / r, and theta moves towards 1 alike: with the
 // whole of it, time steps that alternate by more than a factor of 8 are unstable.
+// At a wall whose velocity changes from U_old to U, v + theta e is U_old + w (U - U_old). Where the motion is
+// prescribed, w = s / 2 + theta (1 - s), s being the share of the extrapolation: 1 in the first step and 1/2
+// later, which is second order. Where it follows from the forces, w = 1: by an explicit exchange the fluid is
+// given the velocity of the beginning of the step, which is late enough.
 #include "core/field.hpp"
 #include "core/sweep.hpp"
 #include "flow/advection_schemes.hpp"
@@ -26,6 +30,7 @@ struct MomentumTerms {
   Real time_step = 1, density = 1, kinematic_viscosity = 0;
   Real step_ratio = 0;          // r
   Real implicit_weight = 1;     // theta
+  Real wall_weight = 1;         // of the present velocity of walls in their velocity in v + theta e
   Real3 acceleration{0, 0, 0};  // f / rho
   AdvectionScheme scheme = AdvectionScheme::None;
 };

@@ -19,6 +19,7 @@ struct Settings {
   Real3 body_force{0, 0, 0};  // per unit volume
   AdvectionScheme advection = AdvectionScheme::None;
   bool implicit_advection = false;
+  bool prescribed_motion = false;  // of all bodies: friction follows their mean velocity in the step
   Real velocity_tolerance = 1e-8;  // largest momentum residual over largest velocity
   int velocity_iteration_limit = 200;
   Real pressure_tolerance = 1e-6;  // residual over divergence before the projection, 2-norms

@@ -248,11 +248,11 @@ KOKKOS_INLINE_FUNCTION NarrowGap narrow_gap(const SolidSampler& solid, int axis,
 /// Velocity along axis at x of the wall of body; on either side of a narrow gap it approaches the mean of
 /// both, so that nothing is squeezed or sheared in a gap that the grid does not resolve.
 KOKKOS_INLINE_FUNCTION Real wall_velocity(const SolidSampler& solid, const NarrowGap& gap, int body, int axis,
-                                          Vec3 x) {
-  const Real own = body >= 0 ? solid.geometry.velocity(body, x)[axis] : 0.0;
+                                          Vec3 x, Motion motion = Motion::AtEnd) {
+  const Real own = body >= 0 ? solid.geometry.velocity(body, x, motion)[axis] : 0.0;
   if (gap.share == 0) return own;
   const int across = body == gap.second ? gap.first : gap.second;
-  const Real other = across >= 0 ? solid.geometry.velocity(across, x)[axis] : 0.0;
+  const Real other = across >= 0 ? solid.geometry.velocity(across, x, motion)[axis] : 0.0;
   return own + gap.share * (other - own);
 }
 

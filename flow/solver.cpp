@@ -68,6 +68,7 @@ MomentumTerms Solver::momentum_terms() const {
     const Real share = extrapolation_share() * share_of_past(ratio);
     terms.step_ratio = share * ratio;
     terms.implicit_weight = 1 - share * (1 - second_order_weight);
+    if (settings_.prescribed_motion) terms.wall_weight = 0.5 * share + terms.implicit_weight * (1 - share);
   }
   for (int c = 0; c < 3; ++c) terms.acceleration[c] = settings_.body_force[c] / settings_.density;
   terms.scheme = settings_.advection;
@@ -102,6 +103,8 @@ void Solver::advance() {
   scalars_.prepare(scalar_flow(velocity_));
   balance_body_force();
   MomentumTerms terms = momentum_terms();
+  bodies_.average_twists(terms.wall_weight);
+  if (friction_stale_) boundary_.refresh_friction(bodies_);
   const Real velocity_scale = extrapolate_velocity(velocity_plan_, velocity_rows_, velocity_, previous_,
                                                    terms.step_ratio, extrapolated_);
   impose_walls(extrapolated_);
@@ -124,6 +127,8 @@ void Solver::advance() {
   fill_velocity(velocity_, 1);
   carry_scalars(terms.step_ratio > 0 && boundary_.cut_cells().count == 0);
 
+  friction_stale_ = bodies_.any_accelerates();
+  bodies_.end_step();
   previous_time_step_ = settings_.time_step;
   time_ += settings_.time_step;
   ++steps_;

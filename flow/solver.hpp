@@ -168,7 +168,7 @@ class Solver {
   Real fluid_points_[3] = {0, 0, 0}, fixed_fluid_points_[3] = {0, 0, 0};  // without moving bodies
   Real3 balanced_force_{0, 0, 0};  // the body force for which balance_body_force() was last called
   bool geometry_stale_ = true, force_unbalanced_ = true, sides_stale_ = false, wall_velocity_stale_ = false,
-       built_ = false;
+       friction_stale_ = true, built_ = false;
 
   FaceVector<Real> velocity_, previous_, extrapolated_;
   Field<Real> pressure_, potential_, divergence_, residual_, samples_;

@@ -35,6 +35,7 @@ void Solver::build_geometry(bool keep_flow) {
   built_ = true;
   geometry_stale_ = false;
   wall_velocity_stale_ = false;
+  friction_stale_ = true;
   velocity_changed();
 }
 
@@ -230,6 +231,7 @@ void Solver::update_geometry() {
   impose_body_motion();
   geometry_stale_ = false;
   wall_velocity_stale_ = false;
+  friction_stale_ = true;
 }
 
 void Solver::bring_geometry_up_to_date() {
@@ -242,6 +244,7 @@ void Solver::refresh_wall_velocity() {
   boundary_.refresh_velocity(bodies_);
   impose_body_motion();
   wall_velocity_stale_ = false;
+  friction_stale_ = true;
 }
 
 }  // namespace peclet::flow

@@ -161,7 +161,7 @@ void refresh_wall_motion(int c, const SolidSampler& solid, Real viscosity, const
           const Real h = sampler.grid.spacing[a];
           Vec3 wall = x;
           wall[a] += (d % 2 ? 1 : -1) * h * target.distance(row, d);
-          sum += target.weight(row, d) * wall_velocity(sampler, gap, body, c, wall) / (h * h);
+          sum += target.weight(row, d) * wall_velocity(sampler, gap, body, c, wall, Motion::Mean) / (h * h);
         }
         target.wall_sum(row) = sum;
       });

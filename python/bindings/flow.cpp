@@ -146,25 +146,48 @@ nb::dict report(const SolverReport& report) {
   return result;
 }
 
+template <bool Settings::*flag>
+void define_flag(nb::class_<Solver>& solver, const char* name) {
+  solver.def_prop_rw(
+      name, [](const Solver& s) { return s.settings().*flag; },
+      [](Solver& s, bool on) { change(s, [&](Settings& settings) { settings.*flag = on; }); });
+}
+
+template <Real Settings::*member>
+void define_positive(nb::class_<Solver>& solver, const char* name, const char* argument) {
+  solver.def_prop_rw(
+      name, [](const Solver& s) { return s.settings().*member; },
+      [argument](Solver& s, double value) {
+        require_positive(value, argument);
+        change(s, [&](Settings& settings) { settings.*member = value; });
+      });
+}
+
+template <int Settings::*limit>
+void define_iteration_limit(nb::class_<Solver>& solver, const char* name) {
+  solver.def_prop_rw(
+      name, [](const Solver& s) { return s.settings().*limit; },
+      [](Solver& s, int value) {
+        require(value >= 1, "iters", "a positive integer", value);
+        change(s, [&](Settings& settings) { settings.*limit = value; });
+      });
+}
+
 void define_settings(nb::class_<Solver>& solver) {
+  define_flag<&Settings::implicit_advection>(solver, "implicit_advection");
+  define_flag<&Settings::prescribed_motion>(solver, "prescribed_motion");
+  define_positive<&Settings::density>(solver, "density", "rho");
+  define_positive<&Settings::time_step>(solver, "time_step", "dt");
+  define_positive<&Settings::velocity_tolerance>(solver, "velocity_tolerance", "rtol");
+  define_positive<&Settings::pressure_tolerance>(solver, "pressure_tolerance", "rtol");
+  define_iteration_limit<&Settings::velocity_iteration_limit>(solver, "velocity_iteration_limit");
+  define_iteration_limit<&Settings::pressure_iteration_limit>(solver, "pressure_iteration_limit");
   solver
-      .def_prop_rw(
-          "density", [](const Solver& s) { return s.settings().density; },
-          [](Solver& s, double value) {
-            require_positive(value, "rho");
-            change(s, [&](Settings& settings) { settings.density = value; });
-          })
       .def_prop_rw(
           "viscosity", [](const Solver& s) { return s.settings().viscosity; },
           [](Solver& s, double value) {
             require_non_negative(value, "mu");
             change(s, [&](Settings& settings) { settings.viscosity = value; });
-          })
-      .def_prop_rw(
-          "time_step", [](const Solver& s) { return s.settings().time_step; },
-          [](Solver& s, double value) {
-            require_positive(value, "dt");
-            change(s, [&](Settings& settings) { settings.time_step = value; });
           })
       .def_prop_rw(
           "body_force",
@@ -180,35 +203,6 @@ void define_settings(nb::class_<Solver>& solver) {
           "advection_scheme", [](const Solver& s) { return s.settings().advection; },
           [](Solver& s, AdvectionScheme scheme) {
             change(s, [&](Settings& settings) { settings.advection = scheme; });
-          })
-      .def_prop_rw(
-          "implicit_advection", [](const Solver& s) { return s.settings().implicit_advection; },
-          [](Solver& s, bool on) {
-            change(s, [&](Settings& settings) { settings.implicit_advection = on; });
-          })
-      .def_prop_rw(
-          "velocity_tolerance", [](const Solver& s) { return s.settings().velocity_tolerance; },
-          [](Solver& s, double value) {
-            require_positive(value, "rtol");
-            change(s, [&](Settings& settings) { settings.velocity_tolerance = value; });
-          })
-      .def_prop_rw(
-          "velocity_iteration_limit", [](const Solver& s) { return s.settings().velocity_iteration_limit; },
-          [](Solver& s, int value) {
-            require(value >= 1, "iters", "a positive integer", value);
-            change(s, [&](Settings& settings) { settings.velocity_iteration_limit = value; });
-          })
-      .def_prop_rw(
-          "pressure_tolerance", [](const Solver& s) { return s.settings().pressure_tolerance; },
-          [](Solver& s, double value) {
-            require_positive(value, "rtol");
-            change(s, [&](Settings& settings) { settings.pressure_tolerance = value; });
-          })
-      .def_prop_rw(
-          "pressure_iteration_limit", [](const Solver& s) { return s.settings().pressure_iteration_limit; },
-          [](Solver& s, int value) {
-            require(value >= 1, "iters", "a positive integer", value);
-            change(s, [&](Settings& settings) { settings.pressure_iteration_limit = value; });
           });
 }
 

@@ -15,11 +15,11 @@ using peclet::python::to_numpy;
 namespace peclet::flow {
 namespace {
 
-constexpr std::int64_t motion_columns = 18;
+constexpr std::int64_t motion_columns = 24;
 
 /// Everything that the flow needs to go on: fields of unknowns, clock (time, last time step, steps, whether
-/// the body force is still to be balanced), and bodies (n, 18): translation, rotation, linear and angular
-/// velocity, centre, pinned, dynamic.
+/// the body force is still to be balanced), and bodies (n, 24): translation, rotation, linear and angular
+/// velocity, the same two at the end of the last step, centre, pinned, dynamic.
 nb::dict checkpoint(Solver& solver) {
   nb::dict state;
   for (const StoredField& stored : solver.stored_fields()) {
@@ -40,7 +40,8 @@ nb::dict checkpoint(Solver& solver) {
     for (const Vec3& v : {m.pose.translation, Vec3{q.x, q.y, q.z}})
       motions.insert(motions.end(), {v.x, v.y, v.z});
     motions.push_back(q.w);
-    for (const Vec3& v : {m.twist.linear, m.twist.angular, m.center})
+    for (const Vec3& v :
+         {m.twist.linear, m.twist.angular, m.former_twist.linear, m.former_twist.angular, m.center})
       motions.insert(motions.end(), {v.x, v.y, v.z});
     motions.push_back(m.pinned);
     motions.push_back(m.dynamic);
@@ -55,9 +56,10 @@ BodyMotion to_motion(const Input<double>& rows, Index b, double scale) {
   BodyMotion motion;
   motion.pose = Pose{vector(0), Quaternion{at(3), at(4), at(5), at(6)}, scale};
   motion.twist = Twist{vector(7), vector(10)};
-  motion.center = vector(13);
-  motion.pinned = at(16) != 0;
-  motion.dynamic = at(17) != 0;
+  motion.former_twist = Twist{vector(13), vector(16)};
+  motion.center = vector(19);
+  motion.pinned = at(22) != 0;
+  motion.dynamic = at(23) != 0;
   return motion;
 }
 

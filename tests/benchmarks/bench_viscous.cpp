@@ -56,6 +56,7 @@ void run(const Case& c, Real number, int repetitions, Table& table) {
   ImmersedBoundary boundary(grid, sides);
   Bodies bodies;
   boundary.build(bodies, samples, {number, 1});
+  boundary.refresh_friction(bodies);
   const SweepPlan plan(c.cells, boundary.rows().box, periodic.axis);
 
   MomentumTerms terms;

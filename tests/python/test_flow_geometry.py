@@ -8,7 +8,7 @@ import pytest
 from peclet import flow
 from peclet.core.geom import SceneBuilder
 
-from tests.python.flow_scenes import box_with, face_is_fluid, spheres
+from tests.python.flow_scenes import assert_same_flow, box_with, face_is_fluid, spheres
 
 N = 16
 FIELDS = ("u", "v", "w", "p", "sdf")
@@ -33,12 +33,6 @@ def stepped(*bodies, steps=1, dt=1.0, size=N):
     for _ in range(steps):
         solver.step()
     return solver
-
-
-def assert_same_flow(one, other):
-    for name in FIELDS:
-        np.testing.assert_array_equal(one.get_field(name), other.get_field(name), err_msg=name)
-    np.testing.assert_array_equal(one.hydro_force_torque_reaction(), other.hydro_force_torque_reaction())
 
 
 def test_distance_and_owner_of_two_spheres():

@@ -118,6 +118,7 @@ class Geometry(Part):
 
         Takes effect with rebuild_geometry(), refresh_wall_velocity() or the next step(). A center, once
         given, stays where it is; without one, the body turns about its translation.
+        These are the velocities at the end of the step, see also set_prescribed_motion().
         Raises RuntimeError when there is no such instance.
         """
         number = self._instance(instance, "instance")
@@ -125,6 +126,22 @@ class Geometry(Part):
         angular = _checks.vector(ang_vel, "ang_vel")
         pinned = None if center is None else _checks.vector(center, "center")
         self._core.set_motion(number, linear, angular, pinned)
+
+    def set_prescribed_motion(self, on: bool) -> None:
+        """True: bodies follow a motion that is known beforehand; False (the default): forces move them.
+
+        Friction on a wall that accelerates follows its mean velocity in the step if the motion is
+        prescribed: flow and forces are of second order in time, and the force of a step is that of its
+        middle. Where the velocity follows from the force, an explicit exchange hands over the velocity of
+        the beginning of the step; friction then follows the velocity that is given, which is late by half a
+        step instead of a whole one. Bodies of constant velocity are the same either way.
+        """
+        self._core.prescribed_motion = _checks.flag(on, "on")
+
+    @property
+    def prescribed_motion(self) -> bool:
+        """Whether friction follows the mean velocity of the bodies in a step."""
+        return self._core.prescribed_motion
 
     def rebuild_geometry(self) -> None:
         """Sample the bodies where they are now; the flow is kept.

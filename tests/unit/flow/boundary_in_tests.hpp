@@ -13,6 +13,7 @@ struct BoundaryInTest {
                           const WallFriction& friction = {0.1, 1e-2})
       : bodies(scene_of(spheres), grid_in_tests(), true, {}), boundary(grid_in_tests(), {}) {
     boundary.build(bodies, {}, friction);
+    boundary.refresh_friction(bodies);
   }
 };
 

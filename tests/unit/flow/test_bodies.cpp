@@ -21,12 +21,12 @@ std::vector<Real> distances(const BodyGeometry& geometry, int body, const std::v
 }
 
 std::vector<Vec3> surface_velocities(const BodyGeometry& geometry, int body,
-                                     const std::vector<Vec3>& points) {
+                                     const std::vector<Vec3>& points, Motion motion = Motion::AtEnd) {
   const Array<Vec3> x = copy_from_host("points", points);
   const Array<Vec3> u("velocities", points.size());
   for_each(
       "surface_velocities", static_cast<Index>(points.size()),
-      KOKKOS_LAMBDA(Index n) { u(n) = geometry.velocity(body, x(n)); });
+      KOKKOS_LAMBDA(Index n) { u(n) = geometry.velocity(body, x(n), motion); });
   return copy_to_host(u);
 }
 
@@ -159,6 +159,25 @@ TEST(CountImageOverlap, FindsImagesThatReachIntoTheBox) {
   EXPECT_GT(count_image_overlap(grid, tank.geometry(), 1), 0);  // 4.5 + 2.9 > 7
   Bodies sphere(scene_of({{{5.8, 5.1, 3.3}, 1.0}}), grid, true, {});
   EXPECT_EQ(count_image_overlap(grid, sphere.geometry(), 1), 0);
+}
+
+TEST(Bodies, MeanTwistLiesBetweenTheFormerAndThePresentOne) {
+  Bodies bodies(scene_of({{{5.5, 3, 1}, 1.5, {{0.4, 0, 0}, {0, 0, 0.8}}}}), grid, true, {});
+  const std::vector<Vec3> point{{5.5, 4, 1}};
+  const auto mean_velocity = [&] {
+    return surface_velocities(bodies.geometry(), 0, point, Motion::Mean)[0];
+  };
+  EXPECT_FALSE(bodies.any_accelerates());
+  bodies.set_twist(0, {{0.4, 0.8, 0}, {0, 0, 1.6}});
+  EXPECT_TRUE(bodies.any_accelerates());
+  bodies.average_twists(0.25);
+  EXPECT_NEAR(mean_velocity().x, 0.4 - 1.0, 1e-14);  // spin 0.8 + (1.6 - 0.8) / 4
+  EXPECT_NEAR(mean_velocity().y, 0.2, 1e-14);
+  bodies.end_step();
+  EXPECT_FALSE(bodies.any_accelerates());
+  bodies.average_twists(0.25);
+  EXPECT_EQ(mean_velocity().x, 0.4 - 1.6);
+  EXPECT_EQ(mean_velocity().y, 0.8);
 }
 
 }  // namespace

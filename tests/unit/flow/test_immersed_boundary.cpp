@@ -108,6 +108,7 @@ TEST(ImmersedBoundary, BodiesThatMeetAndPartLeaveNoTrace) {
     for (const Vec3 center : {beside, far, across_the_side, beside, far}) {
       moved.bodies.set_pose(0, center, {});
       moved.boundary.update(moved.bodies, pressure, {0.1, 1e-2});
+      moved.boundary.refresh_friction(moved.bodies);
       const BoundaryInTest fresh({body(center), other});
       expect_same_walls(moved.boundary, fresh.boundary);
       const bool is_far = center.y == far.y;

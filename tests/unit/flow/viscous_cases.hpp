@@ -52,6 +52,7 @@ struct Flow {
     fill_mirrored_ghosts(samples, sides);
     Bodies bodies;
     boundary.build(bodies, samples, {0.1, 1e-2});
+    boundary.refresh_friction(bodies);
     const Periodicity periodic = sides.periodicity();
     for (int c = 0; c < 3; ++c) {
       rows[c] = velocity_rows(boundary.rows(), sides, n, c);

@@ -1,0 +1,68 @@
+"""Motion of bodies that is prescribed: what friction follows, and runs that go on."""
+
+import numpy as np
+import pytest
+from peclet.flow import Solver
+
+from tests.python.flow_scenes import assert_same_flow, box_with
+
+START = (6.3, 5.6, 6.2)
+
+
+def make(prescribed):
+    solver = Solver(14, 12, 13)
+    solver.set_dt(2.0)
+    solver.set_prescribed_motion(prescribed)
+    return box_with(solver, (START, 3.2, (0.05, 0.0, 0.0), (0.0, 0.0, 0.02)))
+
+
+def run(solver, speeds, steps):
+    """The sphere moves along x with these speeds, and spins faster and faster."""
+    for n in steps:
+        solver.set_instance_transform(0, (START[0] + sum(speeds[: n + 1]) * solver.dt, *START[1:]))
+        solver.set_instance_motion(0, (speeds[n], 0, 0), (0, 0, 0.02 * speeds[n] / speeds[0]))
+        solver.step()
+    return np.array(solver.hydro_force_torque_reaction())[:, 0]
+
+
+def test_is_off_until_switched_on():
+    solver = Solver(8, 8, 8)
+    assert solver.prescribed_motion is False
+    solver.set_prescribed_motion(True)
+    assert solver.prescribed_motion is True
+    with pytest.raises(TypeError, match="on: expected"):
+        solver.set_prescribed_motion("yes")
+    assert solver.prescribed_motion is True
+
+
+def test_changes_nothing_for_a_constant_velocity():
+    speeds = [0.05] * 4
+    one, other = make(True), make(False)
+    for solver in (one, other):
+        run(solver, speeds, range(4))
+    assert_same_flow(one, other)
+
+
+def test_friction_follows_the_mean_velocity():
+    """Where inertia is negligible, the torque is that of the mean spin in the step."""
+    speeds = [0.05, 0.05, 0.05, 0.05, 0.1]
+    torques = {}
+    for prescribed in (True, False):
+        solver = make(prescribed)
+        solver.set_mu(50.0)
+        before = run(solver, speeds, range(4))[1, 2]
+        torques[prescribed] = run(solver, speeds, range(4, 5))[1, 2] / before
+    # momentum diffuses through the box in a fraction of the step, implicitly by 9/16 of it
+    assert torques[True] == pytest.approx(1.5, abs=0.1)
+    assert torques[False] == pytest.approx(2.0, abs=0.1)
+
+
+def test_goes_on_bit_by_bit_while_the_body_accelerates():
+    speeds = [0.05, 0.07, 0.11, 0.12, 0.09]
+    whole = make(True)
+    run(whole, speeds, range(5))
+    first, second = make(True), make(True)
+    run(first, speeds, range(3))
+    second.restore(first.checkpoint())
+    run(second, speeds, range(3, 5))
+    assert_same_flow(whole, second)
