@@ -131,6 +131,7 @@ def oscillation(
     box = SphereInBox(
         (width, width, width), radius, middle, sides="slip", ends=("periodic", "periodic"), mu=mu, dt=dt
     )
+    box.solver.set_prescribed_motion(True)
     forces = []
     for n in range(1, periods * per_period + 1):
         phase = omega * n * dt
@@ -138,7 +139,7 @@ def oscillation(
         forces.append(box.step())
     last = np.array(forces[-per_period:]) / (6 * np.pi * mu * radius * amplitude * omega)
     # the force of a step is that of its middle
-    phase = omega * dt * (np.arange(per_period) + 1)
+    phase = omega * dt * (np.arange(per_period) + 0.5)
     return -2 * float(np.mean(last * np.cos(phase))), 2 * float(np.mean(last * np.sin(phase)))
 
 
@@ -161,8 +162,9 @@ def free_fall(
 ) -> Fall:
     """From rest; reynolds: that of the final velocity; times over a^2 / nu.
 
-    The reaction to an acceleration within one step is treated implicitly as added mass m_a:
-    (m + m_a) (v - v_old) / dt = F + W + m_a a_old.
+    The reaction to an acceleration within one step is treated implicitly as added mass m_a; the fluid is
+    given the velocity v + dt/2 a_p that the sphere is predicted to have in the middle of the step, which
+    changes by dt a_f:  (m + m_a) a = F + W + m_a a_f.
     """
     mu = 1.0
     unit = radius**2 / mu
@@ -175,12 +177,14 @@ def free_fall(
     box = SphereInBox(
         (width, width, width), radius, middle, sides="slip", ends=("periodic", "periodic"), mu=mu, dt=step
     )
-    position, velocity, acceleration = middle, 0.0, 0.0
+    position, velocity = middle, 0.0
+    predicted = weight / (mass + added)
+    felt = predicted / 2
     times, velocities = [0.0], [0.0]
     while times[-1] < duration - dt / 2:
-        box.place(position, velocity)
-        force = box.step()
-        acceleration = (force + weight + added * acceleration) / (mass + added)
+        box.place(position, velocity + predicted * step / 2)
+        acceleration = (box.step() + weight + added * felt) / (mass + added)
+        felt, predicted = acceleration + (acceleration - predicted) / 2, acceleration
         velocity += acceleration * step
         position += velocity * step
         times.append(times[-1] + dt)

@@ -106,8 +106,9 @@ def fluid_inertia(
     A sphere that gains the velocity dv at once gives the fluid, within dt, the impulse
     dv (rho V / 2 + 12 a^2 sqrt(pi rho mu dt) + 6 pi mu a dt): added mass, history force and Stokes drag; one
     that gains the rate of rotation dw gives it dw (16/3 a^4 sqrt(pi rho mu dt) + 8 pi mu a^3 dt)
-    [LandauLifshitz1987, section 24]. Larger estimates are stable, too small ones are not, so the largest
-    added mass and the largest semi-axis of the ellipsoid count.
+    [LandauLifshitz1987, section 24]. Of the drag half counts, that of the mean velocity in the step. Larger
+    estimates are stable, too small ones are not, so the largest added mass and the largest semi-axis of the
+    ellipsoid count.
 
     With a coefficient, the added mass is so many times the displaced mass and the damping zero.
     """
@@ -120,7 +121,7 @@ def fluid_inertia(
     if coefficient is None:
         added_mass, damping = (
             density * volume * [mass for mass, _ in by_pressure] + 12 * a**2 * layer,
-            6 * math.pi * viscosity * a * time_step,
+            3 * math.pi * viscosity * a * time_step,
         )
     else:
         added_mass, damping = coefficient * density * volume, np.zeros_like(volume)

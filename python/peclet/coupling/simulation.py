@@ -13,12 +13,15 @@ from peclet.coupling import checkpoint, slices
 from peclet.coupling.bodies import Body, fluid_inertia
 from peclet.coupling.history import History
 from peclet.coupling.interrupt import between_steps
+from peclet.coupling.prediction import Prediction
 from peclet.coupling.rotation import from_body_axes, to_body_axes
 from peclet.coupling.state import contact_state, require_valid, restore
 
 Vectors = NDArray[np.float64]
 _AXES = ("x", "y", "z")
 _MOTION = ("positions", "quaternions", "velocities", "angular_velocities")
+# Smaller changes of the momentum of a body are rounding, not contact.
+_ROUNDING = 1e-9
 
 
 class CoupledSimulation:
@@ -29,15 +32,18 @@ class CoupledSimulation:
     of the flow. Positions, velocities and orientations of the particles are the initial state. The
     properties of the fluid, the masses of the particles and all poses in the flow are set here.
 
-    One step of length dt: the fluid goes on with the bodies at their present pose and velocity, returns
-    force and torque, and the bodies go on in substeps with these loads frozen. An explicit exchange would
-    be unstable for bodies that are light beside the fluid they set in motion [CausinGerbeauNobile2005], so
-    the part of the reaction that goes with the new acceleration is implicit [SchwarzKempeFroehlich2015]:
+    One step of length dt: the fluid goes on with the bodies at their present pose and with the velocity
+    v + dt/2 a_p that they are predicted to have in the middle of the step, returns force and torque, and the
+    bodies go on in substeps with these loads frozen; a_p: see Prediction. An explicit exchange would be
+    unstable for bodies that are light beside the fluid they set in motion [CausinGerbeauNobile2005], so what
+    the reaction changes by where the new acceleration a differs from the one that the fluid has felt, a_f,
+    and from a_p is implicit [SchwarzKempeFroehlich2015]:
 
-        (m + m_a + m_d) a = F + (m - rho V) g + m_a a_old
+        m a = F + (m - rho V) g - m_a (a - a_f) - m_d (a - a_p / 2)
 
-    with added mass m_a and damping m_d estimated from the size, or m_a = added_mass rho V and m_d = 0;
-    likewise for rotations. Contacts act on the masses m alone, after that, and conserve momentum; a_old is
+    with added mass m_a and damping m_d estimated from the size, or m_a = added_mass rho V and m_d = 0. Only
+    half of a_p counts as felt by the drag, since the fluid around the body follows half a step later.
+    Rotations do the same with nothing predicted, a_p = 0. Contacts act on the masses m alone, after that, and conserve momentum; a_f is
     without them, so that the velocity lost in an impact is not handed back in the next step.
     """
 
@@ -72,7 +78,8 @@ class CoupledSimulation:
         self._weight = (self._mass - density * volume) * np.array(_checks.vector(gravity, "gravity"))
         coefficient = None if added_mass == "auto" else _checks.non_negative(added_mass, "added_mass")
         self._fluid = fluid_inertia(self._bodies, density, viscosity, self._time_step, coefficient)
-        self._acceleration = np.zeros((len(self._bodies), 3))
+        resisting = self._mass[:, 0] + self._fluid.added_mass + self._fluid.damping
+        self._motion = Prediction(self._weight / resisting[:, None])
         self._angular_acceleration = np.zeros((len(self._bodies), 3))
 
         flow.set_rho(density)
@@ -131,11 +138,12 @@ class CoupledSimulation:
         Raises RuntimeError if flow.dt or the number of particles differs from that of the simulation.
         """
         self._require_unchanged()
-        self._place_bodies()
+        self._place_bodies(ahead=True)
         self._flow.rebuild_geometry()
         self._flow.step()
         force, torque = np.asarray(self._flow.hydro_force_torque_reaction())[:, self._instances]
-        applied = self._accelerate(force)
+        acceleration = self._acceleration(force)
+        applied = self._mass * acceleration
         self._contacts.set_external_forces(applied)
         self._contacts.set_external_torques(self._accelerate_rotation(torque))
         before = self._contacts.get_velocities()
@@ -143,6 +151,9 @@ class CoupledSimulation:
             self._contacts.step(self._time_step / self._substeps)
         bodies = self.body_state()
         impulse = self._mass * (bodies["velocity"] - before) - applied * self._time_step
+        momentum = self._mass * (np.abs(before) + np.abs(bodies["velocity"])) + np.abs(applied) * self._time_step
+        touched = np.abs(impulse).max(axis=1) > _ROUNDING * momentum.max(axis=1)
+        self._motion.advance(acceleration, touched)
         self._number_of_steps += 1
         self._time = self._number_of_steps * self._time_step
         loads = {"force": force, "torque": torque, "contact_impulse": impulse}
@@ -190,9 +201,9 @@ class CoupledSimulation:
         own = {
             "time": np.array(self._time),
             "number_of_steps": np.array(self._number_of_steps),
-            "acceleration": self._acceleration.copy(),
             "angular_acceleration": self._angular_acceleration.copy(),
         }
+        own |= self._motion.state()
         return checkpoint.join(
             {
                 "flow": self._flow.checkpoint(),
@@ -212,13 +223,13 @@ class CoupledSimulation:
         restore(self._flow, parts["flow"], self._contacts, parts["contacts"])
         self._set_masses()
         self._time, self._number_of_steps = float(own["time"]), int(own["number_of_steps"])
-        self._acceleration = own["acceleration"].copy()
+        self._motion.set_state(own)
         self._angular_acceleration = own["angular_acceleration"].copy()
         self._history = history
 
     def _own_shapes(self) -> dict[str, tuple[int, ...]]:
-        vectors = (len(self._bodies), 3)
-        return {"time": (), "number_of_steps": (), "acceleration": vectors, "angular_acceleration": vectors}
+        vectors = ("angular_acceleration", *self._motion.state())
+        return {"time": (), "number_of_steps": ()} | dict.fromkeys(vectors, (len(self._bodies), 3))
 
     def plot(self, axis: str = "y") -> Any:
         """Position and velocity of all bodies along one axis over time, as a matplotlib figure."""
@@ -272,28 +283,36 @@ class CoupledSimulation:
         self._contacts.set_inv_mass(1 / self._mass[:, 0])
         self._contacts.set_inv_inertia(1 / self._inertia)
 
-    def _place_bodies(self, *motion: Vectors) -> None:
-        """Pose and velocity of the particles go to the flow."""
-        columns = motion or [getattr(self._contacts, f"get_{name}")() for name in _MOTION]
-        for instance, x, q, v, w in zip(self._instances, *columns, strict=True):
+    def _place_bodies(self, *, ahead: bool = False) -> None:
+        """Pose and velocity of the particles go to the flow; ahead: with the velocity in the middle of the step."""
+        positions, orientations, velocities, spins = (
+            getattr(self._contacts, f"get_{name}")() for name in _MOTION
+        )
+        if ahead:
+            velocities = velocities + self._motion.lead(self._time_step)
+        for instance, x, q, v, w in zip(
+            self._instances, positions, orientations, velocities, spins, strict=True
+        ):
             self._flow.set_instance_transform(instance, x, q)
             self._flow.set_instance_motion(instance, v, w)
 
-    def _accelerate(self, force: Vectors) -> Vectors:
-        """The force that gives a body of mass m alone the acceleration that it has within the fluid."""
+    def _acceleration(self, force: Vectors) -> Vectors:
+        """Acceleration of the bodies within the fluid, without contacts."""
         added, damping = self._fluid.added_mass[:, None], self._fluid.damping[:, None]
-        total = force + self._weight + added * self._acceleration
-        self._acceleration = total / (self._mass + added + damping)
-        return self._mass * self._acceleration
+        total = force + self._weight + added * self._motion.felt + 0.5 * damping * self._motion.predicted
+        return total / (self._mass + added + damping)
 
     def _accelerate_rotation(self, torque: Vectors) -> Vectors:
-        """Like _accelerate, of Euler's equation I dw/dt + w x I w = T along the axes of the body."""
+        """The torque that gives bodies without fluid the angular acceleration that they have within it.
+
+        Euler's equation I dw/dt + w x I w = T along the axes of the body, nothing predicted.
+        """
         added, damping = self._fluid.added_inertia, self._fluid.rotational_damping[:, None]
         orientation = self._contacts.get_quaternions()
-        former = to_body_axes(orientation, self._angular_acceleration)
+        felt = to_body_axes(orientation, self._angular_acceleration)
         w = to_body_axes(orientation, self._contacts.get_angular_velocities())
         gyroscopic = np.cross(w, self._inertia * w)
-        total = to_body_axes(orientation, torque) + added * former - gyroscopic
+        total = to_body_axes(orientation, torque) + added * felt - gyroscopic
         acceleration = total / (self._inertia + added + damping)
         self._angular_acceleration = from_body_axes(orientation, acceleration)
         return from_body_axes(orientation, self._inertia * acceleration + gyroscopic)
