@@ -124,7 +124,7 @@ CASES = (
         small=lambda: falling_sphere(4, 48, 1.5, 0.05, 0.06, 0.06, ("0.5", "1")),
         full=lambda curves: (
             with_order(
-                lambda a: falling_sphere(a, 20 * a, 1.5, 0.075 / a, 0.03, 0.035, FALL_TIMES, curves), (3, 6)
+                lambda a: falling_sphere(a, 20 * a, 1.5, 0.075 / a, 0.03, 0.03, FALL_TIMES, curves), (3, 6)
             )
             + with_order(
                 lambda a: falling_sphere(a, 20 * a, 7.8, 0.075 / a, 0.03, 0.03, FALL_TIMES, curves), (3, 6)

@@ -12,6 +12,7 @@ import sys
 import time
 
 import harness
+import newer_reference
 import numpy as np
 
 SCRIPT = harness.ROOT / "tests" / "validation" / "compatible_script.py"
@@ -37,6 +38,7 @@ def swept_cells(solver) -> int:
 
 def measure(resolution: int, steps: int) -> dict:
     """Medians over the steps."""
+    newer_reference.use_older_names()
     sys.argv = [str(SCRIPT), str(steps + WARM_UP), str(resolution)]
     script: dict = {"__name__": "__main__"}
     source = SCRIPT.read_text(encoding="utf-8").partition('if __name__ == "__main__":')[0]
