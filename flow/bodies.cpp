@@ -38,9 +38,7 @@ bool is_at_rest(const Twist& twist) {
 }
 
 bool same(Vec3 a, Vec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
-bool same(const Twist& a, const Twist& b) {
-  return same(a.linear, b.linear) && same(a.angular, b.angular);
-}
+bool same(const Twist& a, const Twist& b) { return same(a.linear, b.linear) && same(a.angular, b.angular); }
 
 }  // namespace
 

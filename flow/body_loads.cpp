@@ -64,7 +64,8 @@ void add_wall_tractions(int c, const MomentumTerms& terms, const SolidSampler& s
           const int a = d / 2, owner = w.owner(row, d);
           Vec3 wall = x;
           wall[a] += (d % 2 ? 1 : -1) * t.grid.spacing[a] * w.distance(row, d);
-          Real laplacian = w.weight(row, d) * (wall_velocity(sampler, gap, owner, c, wall, Motion::Mean) - here);
+          Real laplacian =
+              w.weight(row, d) * (wall_velocity(sampler, gap, owner, c, wall, Motion::Mean) - here);
           if (!w.is_wall(row, d ^ 1)) {
             const Index q = d % 2 ? p - layout.stride(a) : p + layout.stride(a);
             laplacian += (w.weight(row, d ^ 1) - 1) * (v[q] + t.implicit_weight * e[q] - here);

@@ -94,7 +94,8 @@ void build_wall_rows(int c, const SolidSampler& solid, const FaceVector<OpenFrac
 /// Chains the rows by row of cells once their faces are known.
 void chain_rows(const Layout& layout, WallRows& rows);
 
-/// Recomputes weight and wall_sum from the mean velocities of the bodies in the step. viscosity is the kinematic one.
+/// Recomputes weight and wall_sum from the mean velocities of the bodies in the step. viscosity is the
+/// kinematic one.
 void refresh_wall_motion(int c, const SolidSampler& solid, Real viscosity, const WallRows& rows);
 
 }  // namespace peclet::flow

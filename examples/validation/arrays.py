@@ -70,8 +70,9 @@ def towed(
     A body force f with f V_fluid = F of the step before holds the total momentum of the fluid, so that the
     mean flow settles; K = F / (1 - phi) / (6 pi mu a U), U the mean velocity relative to the spheres with
     zero inside. V_fluid is that of the points which the fluid has in the step: it varies by some 0.1 % as
-    the sphere crosses the grid, and (1 - phi) instead would make as much noise. Without a Reynolds number (speed of the sphere times diameter / nu) there is no advection.
-    In their own frame the spheres stay, and the fluid starts with their speed.
+    the sphere crosses the grid, and (1 - phi) instead would make as much noise. Without a Reynolds number
+    (speed of the sphere times diameter / nu) there is no advection. In their own frame the spheres stay, and
+    the fluid starts with their speed.
     """
     speed = 0.01
     radius = radius_of(solid_fraction, cells**3)

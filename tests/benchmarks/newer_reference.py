@@ -1,4 +1,4 @@
-"""The names of release 0.5 of the reference, in which the compatible script is written, for later releases."""
+"""Names of release 0.5, in which the compatible script is written, for later releases of the reference."""
 
 import sys
 import types

@@ -43,8 +43,9 @@ class CoupledSimulation:
 
     with added mass m_a and damping m_d estimated from the size, or m_a = added_mass rho V and m_d = 0. Only
     half of a_p counts as felt by the drag, since the fluid around the body follows half a step later.
-    Rotations do the same with nothing predicted, a_p = 0. Contacts act on the masses m alone, after that, and conserve momentum; a_f is
-    without them, so that the velocity lost in an impact is not handed back in the next step.
+    Rotations do the same with nothing predicted, a_p = 0. Contacts act on the masses m alone, after that,
+    and conserve momentum; a_f is without them, so that the velocity lost in an impact is not handed back in
+    the next step.
     """
 
     def __init__(
@@ -151,7 +152,7 @@ class CoupledSimulation:
             self._contacts.step(self._time_step / self._substeps)
         bodies = self.body_state()
         impulse = self._mass * (bodies["velocity"] - before) - applied * self._time_step
-        momentum = self._mass * (np.abs(before) + np.abs(bodies["velocity"])) + np.abs(applied) * self._time_step
+        momentum = self._mass * (np.abs(before) + np.abs(bodies["velocity"]))
         touched = np.abs(impulse).max(axis=1) > _ROUNDING * momentum.max(axis=1)
         self._motion.advance(acceleration, touched)
         self._number_of_steps += 1
@@ -284,7 +285,7 @@ class CoupledSimulation:
         self._contacts.set_inv_inertia(1 / self._inertia)
 
     def _place_bodies(self, *, ahead: bool = False) -> None:
-        """Pose and velocity of the particles go to the flow; ahead: with the velocity in the middle of the step."""
+        """Pose and velocity of the particles go to the flow; ahead: predicted for the middle of the step."""
         positions, orientations, velocities, spins = (
             getattr(self._contacts, f"get_{name}")() for name in _MOTION
         )

@@ -20,8 +20,8 @@ std::vector<Real> distances(const BodyGeometry& geometry, int body, const std::v
   return copy_to_host(d);
 }
 
-std::vector<Vec3> surface_velocities(const BodyGeometry& geometry, int body,
-                                     const std::vector<Vec3>& points, Motion motion = Motion::AtEnd) {
+std::vector<Vec3> surface_velocities(const BodyGeometry& geometry, int body, const std::vector<Vec3>& points,
+                                     Motion motion = Motion::AtEnd) {
   const Array<Vec3> x = copy_from_host("points", points);
   const Array<Vec3> u("velocities", points.size());
   for_each(
@@ -164,9 +164,7 @@ TEST(CountImageOverlap, FindsImagesThatReachIntoTheBox) {
 TEST(Bodies, MeanTwistLiesBetweenTheFormerAndThePresentOne) {
   Bodies bodies(scene_of({{{5.5, 3, 1}, 1.5, {{0.4, 0, 0}, {0, 0, 0.8}}}}), grid, true, {});
   const std::vector<Vec3> point{{5.5, 4, 1}};
-  const auto mean_velocity = [&] {
-    return surface_velocities(bodies.geometry(), 0, point, Motion::Mean)[0];
-  };
+  const auto mean_velocity = [&] { return surface_velocities(bodies.geometry(), 0, point, Motion::Mean)[0]; };
   EXPECT_FALSE(bodies.any_accelerates());
   bodies.set_twist(0, {{0.4, 0.8, 0}, {0, 0, 1.6}});
   EXPECT_TRUE(bodies.any_accelerates());
