@@ -45,14 +45,11 @@ def settle(
     weight = schiller_naumann(reynolds) * 0.5 * speed**2 * np.pi / 4 * d**2
     mass = density_ratio * volume
     added = 0.5 * volume + 3 * d**2 * np.sqrt(np.pi * mu * dt)
-    start, velocity = position, 0.0
-    predicted = -weight / (mass + added)  # as in free_fall()
-    felt = predicted / 2
+    start, velocity, acceleration = position, 0.0, 0.0
     fallen, speeds = [], []
     while position > 8 * d:
-        box.place(position, velocity + predicted * dt / 2)
-        acceleration = (box.step() - weight + added * felt) / (mass + added)
-        felt, predicted = acceleration + (acceleration - predicted) / 2, acceleration
+        box.place(position, velocity)
+        acceleration = (box.step() - weight + added * acceleration) / (mass + added)
         velocity += acceleration * dt
         position += velocity * dt
         fallen.append((start - position) / d)
