@@ -86,6 +86,7 @@ class CoupledSimulation:
         flow.set_rho(density)
         flow.set_mu(viscosity)
         flow.set_dt(self._time_step)
+        flow.set_prescribed_motion(False)
         self._set_masses()
         self._time, self._number_of_steps = 0.0, 0
         self._history = History({"time": 0.0} | self.body_state())
