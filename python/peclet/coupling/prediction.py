@@ -15,10 +15,10 @@ class Prediction:
     """How far the velocity that the fluid sees is ahead of that of the bodies; arrays of shape (n, 3).
 
     In a step of length dt, friction acts on the velocity that the fluid is given. That is to be the one in
-    the middle of the step, which its own reaction is to decide: v + dt/2 predicted. The acceleration is
-    predicted to be that of the last step, or to fall off once more as it did from the step before to the
-    last one, which it does after a jolt. A body that a contact has just stopped or pushed is predicted to go
-    on with the velocity that it has.
+    the middle of the step, which its own reaction is to decide: v + dt/2 predicted. The acceleration a is
+    predicted to be that of the last step; where it has more than halved since the step before, as it does
+    after a jolt, min(1, 2 a . a_before / a_before^2) of that. A body that a contact has just stopped or
+    pushed is predicted to go on with the velocity that it has.
     """
 
     def __init__(self, first: Vectors) -> None:
