@@ -6,7 +6,7 @@ import signal
 import numpy as np
 import pytest
 from peclet.core.geom import SceneBuilder
-from peclet.coupling import Body, CoupledSimulation, rotation
+from peclet.coupling import Body, CoupledSimulation, prediction, rotation
 from peclet.dem import Simulation
 from peclet.flow import Solver
 
@@ -79,6 +79,21 @@ def test_spin_decays(ratio):
     settled = spin[7:]
     assert (settled > 0).all()
     assert (np.diff(settled) < 0).all()
+
+
+def test_a_prediction_fades_after_a_jolt_and_ends_at_a_contact():
+    motion = prediction.Prediction(np.array([[2.0, 0.0, 0.0]] * 4))
+    found = np.array([[1.8, 0.0, 0.0], [0.5, 0.0, 0.0], [-1.0, 0.0, 0.0], [1.8, 0.0, 0.0]])
+    motion.advance(found, np.array([False, False, False, True]))
+    # smooth, a quarter left, turned round, touched
+    np.testing.assert_allclose(motion.predicted[:, 0], [1.8, 0.25, 0.0, 0.0])
+    # the velocity given to the fluid has changed by that of the body and by what it is ahead
+    np.testing.assert_allclose(motion.felt, found + (motion.lead(1.0) - [1.0, 0.0, 0.0]))
+    again = prediction.Prediction(np.zeros((4, 3)))
+    again.set_state(motion.state())
+    for each in (motion, again):
+        each.advance(found, np.zeros(4, dtype=bool))
+    np.testing.assert_array_equal(again.felt, motion.felt)
 
 
 # --------------------------------------------------------------------------------------------- contacts
