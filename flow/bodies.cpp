@@ -166,12 +166,13 @@ bool Bodies::any_accelerates() const {
 void Bodies::average_twists(Real weight) {
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const Twist &now = bodies_[b].twist, &former = former_twists_[b];
-    bodies_[b].mean_twist = same(now, former)
-                                ? now
-                                : Twist{former.linear + weight * (now.linear - former.linear),
-                                        former.angular + weight * (now.angular - former.angular)};
+    const Real past = 1 - weight;
+    const Twist mean{now.linear + past * (former.linear - now.linear),
+                     now.angular + past * (former.angular - now.angular)};
+    if (same(mean, bodies_[b].mean_twist)) continue;
+    bodies_[b].mean_twist = mean;
+    stale_ = true;
   }
-  stale_ = true;
 }
 
 void Bodies::end_step() {

@@ -3,6 +3,7 @@
 import numpy as np
 
 AT_REST = (0.0, 0.0, 0.0)
+FIELDS = ("u", "v", "w", "p", "sdf")
 
 
 def spheres(*bodies, pinned=None):
@@ -32,7 +33,7 @@ def box_with(solver, *bodies):
 
 def assert_same_flow(one, other):
     """Fields and loads are equal, bit by bit."""
-    for name in ("u", "v", "w", "p", "sdf"):
+    for name in FIELDS:
         np.testing.assert_array_equal(one.get_field(name), other.get_field(name), err_msg=name)
     np.testing.assert_array_equal(one.hydro_force_torque_reaction(), other.hydro_force_torque_reaction())
 

@@ -8,10 +8,9 @@ import pytest
 from peclet import flow
 from peclet.core.geom import SceneBuilder
 
-from tests.python.flow_scenes import assert_same_flow, box_with, face_is_fluid, spheres
+from tests.python.flow_scenes import FIELDS, assert_same_flow, box_with, face_is_fluid, spheres
 
 N = 16
-FIELDS = ("u", "v", "w", "p", "sdf")
 
 
 def sphere_distance(center, radius, shape=(N, N, N), periodic=True):

@@ -79,8 +79,8 @@ class CoupledSimulation:
         self._weight = (self._mass - density * volume) * np.array(_checks.vector(gravity, "gravity"))
         coefficient = None if added_mass == "auto" else _checks.non_negative(added_mass, "added_mass")
         self._fluid = fluid_inertia(self._bodies, density, viscosity, self._time_step, coefficient)
-        resisting = self._mass[:, 0] + self._fluid.added_mass + self._fluid.damping
-        self._motion = Prediction(self._weight / resisting[:, None])
+        self._resistance = self._mass + (self._fluid.added_mass + self._fluid.damping)[:, None]
+        self._motion = Prediction(self._weight / self._resistance)
         self._angular_acceleration = np.zeros((len(self._bodies), 3))
 
         flow.set_rho(density)
@@ -302,7 +302,7 @@ class CoupledSimulation:
         """Acceleration of the bodies within the fluid, without contacts."""
         added, damping = self._fluid.added_mass[:, None], self._fluid.damping[:, None]
         total = force + self._weight + added * self._motion.felt + 0.5 * damping * self._motion.predicted
-        return total / (self._mass + added + damping)
+        return total / self._resistance
 
     def _accelerate_rotation(self, torque: Vectors) -> Vectors:
         """The torque that gives bodies without fluid the angular acceleration that they have within it.
