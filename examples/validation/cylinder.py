@@ -68,19 +68,11 @@ def unbounded_force() -> tuple[np.ndarray, np.ndarray]:
     )
 
 
-# Distance of the middle of the cylinder from a plane of cell faces, in spacings. On such a plane,
-# the surface would cover points on both sides of the cylinder at once, and the ripples of the force
-# would be twice as high or more.
-OFF_THE_GRID = 0.3
-
-
-def make_solver(
-    resolution: int, length: float, low: float, high: float, sides: tuple[str, ...], scheme: str
-) -> Solver:
-    """The box low <= y <= high with planes of symmetry on these sides; the cylinder at the origin."""
+def make_solver(resolution: int, length: float, width: float, sides: tuple[str, ...], scheme: str) -> Solver:
+    """Half of the box, y >= 0, with planes of symmetry on these sides; the cylinder in the middle."""
     h = 1 / resolution
-    nx, ny = round(length * resolution), round((high - low) * resolution)
-    solver = Solver((nx, ny, 1), extent=(length, ny * h, h), origin=(-length / 2, low, 0))
+    nx, ny = round(length * resolution), round(width / 2 * resolution)
+    solver = Solver((nx, ny, 1), extent=(length, width / 2, h), origin=(-length / 2, 0, 0))
     for side in sides:
         solver.set_domain_bc(side, "slip")
     scene = SceneBuilder()
@@ -106,8 +98,7 @@ def run(
 ) -> Oscillation:
     """The cylinder moves; all sides are planes of symmetry."""
     per_period = per_period or 32 * resolution
-    low = -width / 2 + OFF_THE_GRID / resolution
-    solver = make_solver(resolution, length, low, low + width, ("-x", "+x", "-y", "+y"), scheme)
+    solver = make_solver(resolution, length, width, ("-x", "+x", "-y", "+y"), scheme)
 
     def move(time: float, _: float) -> None:
         solver.set_instance_transform(0, [-AMPLITUDE * np.sin(OMEGA * time), 0, 1 / resolution / 2])
@@ -127,36 +118,29 @@ def run_at_rest(
 ) -> Oscillation:
     """In the frame of the cylinder: a body force -rho dU/dt moves the fluid, the box is periodic along x.
 
-    The pressure is that of the other frame, and so is the force. Half of the box is computed, y >= 0.
+    The pressure is that of the other frame, and so is the force.
     """
     per_period = per_period or 32 * resolution
-    solver = make_solver(resolution, length, 0, width / 2, ("-y", "+y"), scheme)
+    solver = make_solver(resolution, length, width, ("-y", "+y"), scheme)
     solver.set_velocity(0, np.ones(solver.cells))
 
     def push(time: float, dt: float) -> None:
         solver.set_body_force((np.cos(OMEGA * time) - np.cos(OMEGA * (time - dt))) / dt, 0, 0)
 
-    return march(solver, per_period, periods, push, share=0.5)
+    return march(solver, per_period, periods, push)
 
 
 def march(
-    solver: Solver,
-    per_period: int,
-    periods: int,
-    drive: Callable[[float, float], None],
-    share: float = 1,
+    solver: Solver, per_period: int, periods: int, drive: Callable[[float, float], None]
 ) -> Oscillation:
-    """Forces of steps of equal length; drive(time, dt) comes before the step that ends at time.
-
-    share: of the cylinder, inside the box.
-    """
+    """Forces of steps of equal length; drive(time, dt) comes before the step that ends at time."""
     dt = PERIOD / per_period
     solver.set_dt(dt)
     times, forces = dt * np.arange(1, periods * per_period + 1), []
     for time in times:
         drive(time, dt)
         solver.step()
-        # over rho U^2 d / 2
-        forces.append(2 * solver.hydro_force_torque_reaction()[0, 0, 0] / (share * solver.spacing[2]))
+        # over rho U^2 d / 2, twice that on the half
+        forces.append(2 * 2 * solver.hydro_force_torque_reaction()[0, 0, 0] / solver.spacing[2])
     # the force of a step belongs to its middle
     return Oscillation(times - dt / 2, np.array(forces), per_period)
