@@ -7,7 +7,7 @@
 namespace peclet::flow {
 
 /// A point that a wall has just covered still moves relative to it where friction was too slow to stop it,
-/// see smallest_moving_distance. It takes the velocity U of the body; the momentum u - U that it had beyond
+/// see smallest_sliding_distance. It takes the velocity U of the body; the momentum u - U that it had beyond
 /// that is handed on in equal parts to the points that were beside the same body and are still in the fluid.
 /// It would be lost otherwise, and bodies that move would have less drag than bodies at rest.
 class CoveredPoints {

@@ -72,7 +72,7 @@ KOKKOS_INLINE_FUNCTION Real nearest_wall(const WallRows& rows, Index row) {
 }
 
 /// Smallest distance to walls, in spacings, that enters the stencil of the point at x, the low face p across
-/// axis c; never more than smallest_moving_distance.
+/// axis c; never more than smallest_approach_distance.
 KOKKOS_INLINE_FUNCTION Real least_distance(const SolidSampler& solid, int c, Index p, Vec3 x,
                                            Real viscosity) {
   const int body = nearest_owner(solid, c, p, x);
@@ -83,8 +83,11 @@ KOKKOS_INLINE_FUNCTION Real least_distance(const SolidSampler& solid, int c, Ind
   const Real normal_speed = Kokkos::abs(dot(solid.geometry.velocity(body, x), gradient)) / steepness;
   if (normal_speed == 0) return smallest_wall_distance;
   const Real reach = normal_speed * solid.grid.smallest_spacing();
-  constexpr Real rise = smallest_moving_distance - smallest_wall_distance;
-  return smallest_wall_distance + rise * reach / (reach + cell_reynolds_of_half_rise * viscosity);
+  const Real along_normal = gradient[c] * gradient[c] / (steepness * steepness);  // n_c^2
+  const Real moving =
+      smallest_sliding_distance + (smallest_approach_distance - smallest_sliding_distance) * along_normal;
+  return smallest_wall_distance +
+         (moving - smallest_wall_distance) * reach / (reach + cell_reynolds_of_half_rise * viscosity);
 }
 
 /// Weights of a row whose wall distances are at least least; they stay 1 along axes without a wall.
@@ -148,9 +151,9 @@ void refresh_wall_motion(int c, const SolidSampler& solid, Real viscosity, const
         const Index p = target.face(row);
         const Int3 cell = cell_of(layout, p);
         const Vec3 x = sampler.grid.face_center(c, cell[0], cell[1], cell[2]);
-        const Real least = nearest_wall(target, row) < smallest_moving_distance
+        const Real least = nearest_wall(target, row) < smallest_approach_distance
                                ? least_distance(sampler, c, p, x, viscosity)
-                               : smallest_moving_distance;
+                               : smallest_approach_distance;
         set_weights(target, row, least);
         const NarrowGap gap = narrow_gap(sampler, c, cell[0], cell[1], cell[2]);
         Real sum = 0;

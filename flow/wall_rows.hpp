@@ -16,9 +16,14 @@ inline constexpr Real smallest_wall_distance = 1e-2;
 /// R = |U_n| h / nu. Friction slows the point at a distance l down at the rate 2 nu / (l h), and the wall is
 /// there within l / U_n: above R = 2 it arrives first, whatever l. Friction that grows like 1 / l would hand
 /// over what the point still carries in the last step before it is covered, as a jolt; the distance is
-/// therefore at least smallest + (moving - smallest) R / (R + 1/4), and CoveredPoints takes care of the rest.
-inline constexpr Real smallest_moving_distance = 0.125;
-inline constexpr Real cell_reynolds_of_half_rise = 0.25;
+/// therefore at least smallest + (moving - smallest) R / (R + 1/10), and CoveredPoints takes care of the
+/// rest. moving is that of sliding for velocity components across the normal n of the wall, that of approach
+/// for those along it, and between them it follows n_c^2. Along the normal the projection keeps the fluid at
+/// the velocity of the wall, and the derivative of the velocity vanishes there: friction at a small l would
+/// only magnify what the splitting of the two leaves.
+inline constexpr Real smallest_sliding_distance = 0.09;
+inline constexpr Real smallest_approach_distance = 0.4;
+inline constexpr Real cell_reynolds_of_half_rise = 0.1;
 
 /// Between two walls closer than this, in spacings, a stencil keeps this width: the forces that the two
 /// exchange through it stay those of the fluid in the gap.

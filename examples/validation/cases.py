@@ -163,13 +163,15 @@ CASES = (
     ),
     Case(
         "oscillating cylinder",
-        small=lambda: moving_cylinder(12, 10, 2, 0.13, 0.06),
-        full=lambda curves: moving_cylinder(16, 16, 4, 0.04, 0.04),
+        small=lambda: moving_cylinder(16, 8, 2, 0.13, (0.06, 0.015)),
+        full=lambda curves: moving_cylinder(16, 16, 4, 0.04, (0.04, 0.015)),
     ),
     Case(
         "oscillating cylinder, finer grid",
         small=None,
-        full=lambda curves: with_order(lambda n: moving_cylinder(n, 16, 6, 0.04, 0.05, curves), (16, 32)),
+        full=lambda curves: with_order(
+            lambda n: moving_cylinder(n, 16, 6, 0.04, (0.04, 0.01), curves), (16, 32)
+        ),
     ),
     Case(
         "oscillating cylinder in its own frame",

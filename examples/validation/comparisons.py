@@ -275,9 +275,16 @@ SMOOTH = 0.01
 
 
 def oscillating_cylinder(
-    run: cylinder.Oscillation, name: str, target: float, noise_bound: float, curves: Curves | None = None
+    run: cylinder.Oscillation,
+    name: str,
+    target: float,
+    bounds: tuple[float, float],
+    curves: Curves | None = None,
 ) -> Rows:
-    """Coefficients of Morison's formula, and the force itself beside that in unbounded fluid."""
+    """Coefficients of Morison's formula, and the force itself beside that in unbounded fluid.
+
+    bounds: of the deviation of the force and of its roughness.
+    """
     if curves is not None:
         last = run.last_period
         curves["cylinder"] = {"time": last.time / cylinder.PERIOD, "force": last.force}
@@ -286,8 +293,8 @@ def oscillating_cylinder(
     return [
         Row(name, "c_d", 2.09, drag, target),
         Row(name, "c_m", 1.45, added, target),
-        Row(name, "rms deviation of the force / peak", 0.0, deviation, target, deviation, noise_bound),
-        Row(name, "rms above the 20th harmonic / peak", 0.0, rough, SMOOTH, rough, noise_bound),
+        Row(name, "rms deviation of the force / peak", 0.0, deviation, target, deviation, bounds[0]),
+        Row(name, "rms above the 20th harmonic / peak", 0.0, rough, SMOOTH, rough, bounds[1]),
     ]
 
 
@@ -296,13 +303,13 @@ def moving_cylinder(
     size: float,
     periods: int,
     target: float,
-    noise_bound: float,
+    bounds: tuple[float, float],
     curves: Curves | None = None,
 ) -> Rows:
     """The cylinder moves through the grid."""
     run = cylinder.run(resolution, length=size, width=size, periods=periods)
     return oscillating_cylinder(
-        run, f"in-line oscillating cylinder, d/h {resolution}", target, noise_bound, curves
+        run, f"in-line oscillating cylinder, d/h {resolution}", target, bounds, curves
     )
 
 
@@ -310,7 +317,7 @@ def cylinder_at_rest(resolution: int, target: float) -> Rows:
     """The same flow in the frame of the cylinder."""
     run = cylinder.run_at_rest(resolution)
     name = f"in-line oscillating cylinder, in its own frame, d/h {resolution}"
-    return oscillating_cylinder(run, name, target, target)
+    return oscillating_cylinder(run, name, target, (target, SMOOTH))
 
 
 def towed_with_inertia(reynolds: float, settle: int, target: float) -> tuple[Rows, float]:

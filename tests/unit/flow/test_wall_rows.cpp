@@ -108,7 +108,7 @@ Real largest_weight(Vec3 velocity, Vec3 spin, Real viscosity) {
 
 TEST(WallRows, AreBoundedMoreWhereAWallArrivesBeforeFrictionActs) {
   const Real creeping = largest_weight({1e-9, 0, 0}, {}, 1);
-  EXPECT_GT(creeping, 10 / smallest_moving_distance);  // some points are close to the wall
+  EXPECT_GT(creeping, 10 / smallest_sliding_distance);  // some points are close to the wall
   Real weight = creeping;
   for (const Real viscosity : {1.0, 0.1, 0.01}) {
     const Real smaller = largest_weight({0.5, 0.3, 0.4}, {}, viscosity);
@@ -118,7 +118,7 @@ TEST(WallRows, AreBoundedMoreWhereAWallArrivesBeforeFrictionActs) {
   // a sphere that spins covers no points
   EXPECT_GT(largest_weight({}, {0, 0, 5}, 10), 0.5 * creeping);
   EXPECT_LT(largest_weight({5 * 1.9, 0, 0}, {}, 10), 0.5 * creeping);
-  EXPECT_LE(largest_weight({5, 3, 4}, {}, 1e-6), 2.2 / smallest_moving_distance);
+  EXPECT_LE(largest_weight({5, 3, 4}, {}, 1e-6), 2.2 / smallest_sliding_distance);
 }
 
 }  // namespace
