@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Sequence
 
 import numpy as np
@@ -54,23 +55,36 @@ def drag_at_rest(
     )
 
 
+@dataclasses.dataclass(frozen=True)
+class Towed:
+    """Step by step, with U the mean velocity relative to the spheres with zero inside.
+
+    force: K = F / ((1 - phi) 6 pi mu a U) of the force F on the sphere.
+    drag: K = f L^3 / (6 pi mu a U) of the body force f = F / V_fluid that balances it.
+    """
+
+    force: np.ndarray
+    drag: np.ndarray
+    reynolds: float
+
+
 def towed(
     cells: int,
     courant: float,
     distance: float,
     settle: int,
     *,
+    start: Sequence[float] = (0.1, 0.3, -0.2),
     solid_fraction: float = 0.064,
     reynolds: float | None = None,
     scheme: str = "koren",
     in_own_frame: bool = False,
-) -> tuple[np.ndarray, float]:
-    """Drag factors K of the steps that cover the distance (in cells), after settle steps; Reynolds number.
+) -> Towed:
+    """The steps that cover the distance (in cells), after settle steps; start: from the middle of the box.
 
     A body force f with f V_fluid = F of the step before holds the total momentum of the fluid, so that the
-    mean flow settles; K = F / (1 - phi) / (6 pi mu a U), U the mean velocity relative to the spheres with
-    zero inside. V_fluid is that of the points which the fluid has in the step: it varies by some 0.1 % as
-    the sphere crosses the grid, and (1 - phi) instead would make as much noise. Without a Reynolds number
+    mean flow settles. V_fluid is that of the points which the fluid has in the step: it varies by some 0.1 %
+    as the sphere crosses the grid, and (1 - phi) instead would make as much noise. Without a Reynolds number
     (speed of the sphere times diameter / nu) there is no advection. In their own frame the spheres stay, and
     the fluid starts with their speed.
     """
@@ -78,7 +92,7 @@ def towed(
     radius = radius_of(solid_fraction, cells**3)
     mu = 1.0 if reynolds is None else 2 * radius * speed / reynolds
     dt = courant / speed
-    center = (cells - 1) / 2 + np.array([0.1, 0.3, -0.2])
+    center = (cells - 1) / 2 + np.array(start)
     solver = make_array(cells, solid_fraction, center, dt, mu)
     if reynolds is not None:
         solver.set_advection_scheme(scheme)
@@ -88,7 +102,7 @@ def towed(
         solver.set_state(still + speed, still, still)
     else:
         solver.set_instance_motion(0, (speed, 0, 0))
-    force, factors, relative, fluid = 0.0, [], 0.0, 1.0
+    force, factors, forces, relative, fluid = 0.0, [], [], 0.0, 1.0
     for step in range(settle + round(distance / courant)):
         if not in_own_frame:
             center[0] += speed * dt
@@ -100,8 +114,10 @@ def towed(
         fluid = np.count_nonzero(u) / u.size  # solid points show zero
         relative = u.mean() - (0 if in_own_frame else speed * fluid)
         if step >= settle:
-            factors.append(force / (1 - solid_fraction) / (6 * np.pi * mu * radius * relative))
-    return np.array(factors), abs(relative) * 2 * radius / mu
+            stokes = 6 * np.pi * mu * radius * relative
+            factors.append(force / fluid / stokes)
+            forces.append(force / (1 - solid_fraction) / stokes)
+    return Towed(np.array(forces), np.array(factors), abs(relative) * 2 * radius / mu)
 
 
 def noise(factors: np.ndarray) -> tuple[float, float]:

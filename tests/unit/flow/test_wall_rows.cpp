@@ -121,4 +121,34 @@ TEST(WallRows, AreBoundedMoreWhereAWallArrivesBeforeFrictionActs) {
   EXPECT_LE(largest_weight({5, 3, 4}, {}, 1e-6), 2.2 / smallest_sliding_distance);
 }
 
+/// Largest weight of the rows of component c near the axis through center along x.
+Real largest_weight_ahead(const WallRows& rows, int c, Vec3 center) {
+  const WallRows w = rows;
+  const Layout layout(grid.cells);
+  const Grid box = grid;
+  return max_each(
+      "largest_weight_ahead", rows.count, KOKKOS_LAMBDA(Index row) {
+        const Int3 cell = cell_of(layout, w.face(row));
+        const Vec3 arm = box.face_center(c, cell[0], cell[1], cell[2]) - center;
+        Real largest = 0;
+        for (int d = 0; d < 2; ++d)
+          if (arm.y * arm.y + arm.z * arm.z < 0.5 * 0.5 && w.is_wall(row, d))
+            largest = Kokkos::fmax(largest, static_cast<Real>(w.weight(row, d)));
+        return largest;
+      });
+}
+
+TEST(WallRows, AreBoundedMoreAlongTheNormalOfAWallThatApproaches) {
+  Real across = 0;
+  for (int n = 0; n < 8; ++n) {
+    const Vec3 center{2.6 + 0.07 * n, 5.2, 3.6};
+    const BoundaryInTest flow({moving({center, 1.9}, {5, 0, 0})}, {1e-6, 1e-2});
+    const Real along = largest_weight_ahead(flow.boundary.moving_rows(0), 0, center);
+    EXPECT_GT(along, 0);
+    EXPECT_LT(along, 1.1 * 2 / (smallest_approach_distance * (1 + smallest_approach_distance)));
+    across = std::max(across, largest_weight_ahead(flow.boundary.moving_rows(1), 1, center));
+  }
+  EXPECT_GT(across, 1 / smallest_sliding_distance);
+}
+
 }  // namespace
