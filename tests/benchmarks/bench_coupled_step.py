@@ -84,6 +84,7 @@ def tabulate(options: argparse.Namespace) -> harness.Table:
     if options.reference:
         theirs = fastest(reference_rounds)
         table.add("reference / ours", theirs["seconds"] / seconds, "", ">= 75")
+        table.add("release of the reference", harness.release_of_reference(options.reference))
         table.add("step of the reference", theirs["seconds"], "s")
         table.add("process peak of the reference", theirs["peak"] / cells, "B/cell")
     table.add("coupled step", seconds, "s", "<= 0.2" if options.resolution == 12 else "", 1.0)

@@ -149,6 +149,12 @@ def run(
         table.write(options.output)
 
 
+def release_of_reference(python: str) -> str:
+    """Version of the package that this interpreter has installed."""
+    ask = "import importlib.metadata; print(importlib.metadata.version('peclet-flow'))"
+    return subprocess.run([python, "-c", ask], stdout=subprocess.PIPE, text=True, check=True).stdout.strip()
+
+
 def add_reference(parser: argparse.ArgumentParser) -> None:
     """--reference: the interpreter of another environment."""
     parser.add_argument(
