@@ -102,7 +102,7 @@ def towed(
         solver.set_state(still + speed, still, still)
     else:
         solver.set_instance_motion(0, (speed, 0, 0))
-    force, factors, forces, relative, fluid = 0.0, [], [], 0.0, 1.0
+    force, forces, drags, relative, fluid = 0.0, [], [], 0.0, 1.0
     for step in range(settle + round(distance / courant)):
         if not in_own_frame:
             center[0] += speed * dt
@@ -115,9 +115,9 @@ def towed(
         relative = u.mean() - (0 if in_own_frame else speed * fluid)
         if step >= settle:
             stokes = 6 * np.pi * mu * radius * relative
-            factors.append(force / fluid / stokes)
             forces.append(force / (1 - solid_fraction) / stokes)
-    return Towed(np.array(forces), np.array(factors), abs(relative) * 2 * radius / mu)
+            drags.append(force / fluid / stokes)
+    return Towed(np.array(forces), np.array(drags), abs(relative) * 2 * radius / mu)
 
 
 def noise(factors: np.ndarray) -> tuple[float, float]:

@@ -86,8 +86,9 @@ def tabulate(options: argparse.Namespace) -> harness.Table:
             rows.append([number, f"ours, to residual {residual:.2g}", ours, "s", None])
             rows.append([number, f"reference, to residual {residual:.2g}", reference, "s", None])
     if options.reference:
-        ratios.append([None, "release of the reference", harness.release_of_reference(options.reference)])
-    table.rows = [[*row, *[None] * (len(table.columns) - len(row))] for row in ratios + rows]
+        release = harness.release_of_reference(options.reference)
+        ratios.append([None, "release of the reference", release, None, None])
+    table.rows = ratios + rows
     return table
 
 

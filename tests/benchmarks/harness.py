@@ -118,6 +118,8 @@ def provide_geom() -> None:
 def run_child(script: str, task: dict[str, Any], python: str = sys.executable, threads: int = 0) -> Any:
     """What the measure() of this script returns in a process of its own."""
     environment = dict(os.environ)
+    if python != sys.executable:
+        environment.pop("PYTHONPATH", None)  # another environment has its own packages
     if threads:
         environment["OMP_NUM_THREADS"] = str(threads)
     command = [python, script, "--measure", json.dumps(task)]

@@ -1,20 +1,15 @@
 """Names of release 0.5, in which the compatible script is written, for later releases of the reference."""
 
-import sys
-import types
-
 
 def use_older_names() -> None:
-    """Give the installed modules the older names where they lack them; ours know both."""
+    """Give the installed modules the older names where they lack them; ours know both.
+
+    The harness has given them peclet.core.geom before.
+    """
     from peclet import dem, flow
 
     if hasattr(flow.Solver, "set_velocity_solver_params"):
         return
-    from peclet import geom
-
-    core = types.ModuleType("peclet.core")
-    core.geom = geom
-    sys.modules["peclet.core"] = core
 
     class Solver(flow.Solver):
         def __getattr__(self, name):
