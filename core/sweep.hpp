@@ -16,6 +16,7 @@
 #include <tuple>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "core/sweep_stage.hpp"
 
@@ -168,15 +169,14 @@ struct StageTuple {
 template <class First, class Repeated, class Last>
 struct StageSeries {
   const First& first;
-  const Repeated& repeated;
+  const std::vector<Repeated>& repeated;
   const Last& last;
-  int repetitions;
 
   void run(const SweepPlan& plan, int stage, int plane) const {
     if (stage == 0)
       first.run_plane(plan.axis(), plane);
-    else if (stage <= repetitions)
-      repeated(stage - 1).run_plane(plan.axis(), plane);
+    else if (stage <= static_cast<int>(repeated.size()))
+      repeated[stage - 1].run_plane(plan.axis(), plane);
     else
       run_and_keep_result(plan, last, plane);
   }
@@ -219,8 +219,12 @@ template <class First, class Repeated, class Last>
 typename Last::Result sweep_series(const char* label, const SweepPlan& plan, const First& first,
                                    int repetitions, const Repeated& repeated, const Last& last) {
   if constexpr (runs_on_host) {
-    using Pipeline = detail::StageSeries<First, Repeated, Last>;
-    const Pipeline pipeline{first, repeated, last, repetitions};
+    using Middle = decltype(repeated(0));
+    using Pipeline = detail::StageSeries<First, Middle, Last>;
+    std::vector<Middle> middle;  // made once: copying a stage for every plane counts references to its views
+    middle.reserve(repetitions);
+    for (int m = 0; m < repetitions; ++m) middle.push_back(repeated(m));
+    const Pipeline pipeline{first, middle, last};
     const int stages = repetitions + 2, at_once = detail::stages_at_once(plan);
     for (int done = 0; done < stages; done += at_once)
       detail::HostSweep<Pipeline>(plan, pipeline, done, std::min(at_once, stages - done)).run(label);
