@@ -1,6 +1,7 @@
 #include "flow/immersed_boundary.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <utility>
 
@@ -196,6 +197,12 @@ ImmersedBoundary::ImmersedBoundary(const Grid& grid, const DomainSides& sides)
   solid_.sdf = Field<Real>("flow::sdf", layout);
   solid_.owner = Field<int>("flow::owner", layout);
   solid_.marks = Field<int>("flow::cell_marks", layout);
+  revise();
+}
+
+void ImmersedBoundary::revise() {
+  static std::atomic<Index> number{0};
+  revision_ = ++number;
 }
 
 void ImmersedBoundary::build(Bodies& bodies, const Field<Real>& samples, const WallFriction& friction) {
@@ -271,6 +278,7 @@ void ImmersedBoundary::sample_fixed(Bodies& bodies) {
 
 void ImmersedBoundary::update(Bodies& bodies, const Field<Real>& pressure, const WallFriction& friction,
                               const Real3& hydrostatic_force) {
+  revise();
   friction_ = friction;
   if (pressure.is_allocated()) extrapolate_pressure(grid_, open_, sides_, near_, hydrostatic_force, pressure);
   const bool had_regions = !regions_.empty();
@@ -361,6 +369,7 @@ void ImmersedBoundary::refresh_velocity(Bodies& bodies) {
 }
 
 void ImmersedBoundary::refresh_friction(Bodies& bodies) {
+  revise();
   solid_.geometry = bodies.geometry();
   for (int c = 0; c < 3; ++c) refresh_wall_motion(c, solid_, friction_.viscosity, moving_rows_[c]);
 }

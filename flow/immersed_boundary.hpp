@@ -54,6 +54,8 @@ class ImmersedBoundary {
   Real covered_points(int c) const;
   /// Rows and slits beside moving bodies depend on it.
   const WallFriction& friction() const { return friction_; }
+  /// A number that no other state of open() and the wall rows has had, of this boundary or another one.
+  Index revision() const { return revision_; }
   bool has_slits() const { return slits_[0].count + slits_[1].count + slits_[2].count > 0; }
   bool has_moving_walls() const {
     return moving_rows_[0].count + moving_rows_[1].count + moving_rows_[2].count > 0;
@@ -65,9 +67,11 @@ class ImmersedBoundary {
   void sample_fixed(Bodies& bodies);
   void sample_moving();
   bool reaches_sides() const;
+  void revise();
 
   Grid grid_;
   DomainSides sides_;
+  Index revision_ = 0;
   SolidSampler solid_;
   FaceVector<OpenFraction> open_, fixed_open_;
   Field<Real> fixed_sdf_;

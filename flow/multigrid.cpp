@@ -144,6 +144,7 @@ typename BasicMultigrid<reactive>::Level BasicMultigrid<reactive>::make_level(co
   level.coefficients = FaceVector<float>(name + ".coefficients", shape.layout);
   if constexpr (reactive) {
     level.reaction = Field<float>(name + ".reaction", shape.layout);
+    level.mass = Field<float>(name + ".mass", shape.layout);
     level.op = ReactiveOperator<float>(shape, level.coefficients, Real3{1, 1, 1}, level.reaction);
   } else {
     level.op = LevelOperator<float>(shape, level.coefficients, Real3{1, 1, 1});
@@ -258,7 +259,8 @@ void BasicMultigrid<reactive>::derive(int group, const std::vector<Box>& pieces)
     else
       derive_coefficients<LevelOperator<OpenFraction>>(finest_, shape, merging, changed_, coefficients);
     if constexpr (reactive)
-      derive_reaction(levels[l - 1].shape, levels[l - 1].reaction, merging, changed_, levels[l].reaction);
+      derive_reaction({levels[l - 1].shape, levels[l - 1].reaction, levels[l - 1].mass, mass_}, merging,
+                      changed_, levels[l].reaction, levels[l].mass);
   }
 }
 
@@ -273,13 +275,13 @@ void BasicMultigrid<reactive>::set_coarse_operator(const Group& group) const {
 }
 
 template <bool reactive>
-void BasicMultigrid<reactive>::apply_below(const Group& group) const {
+void BasicMultigrid<reactive>::apply_below(const Group& group, bool from_zero) const {
   const std::vector<Level>& levels = group.levels;
   const std::size_t last = levels.size() - 1;
   for (std::size_t l = 1; l < last; ++l) {
     const Level& level = levels[l];
     smooth_and_restrict(level.op, level.plan, level.rows, level.transfer, level.fields,
-                        levels[l + 1].fields.rhs);
+                        levels[l + 1].fields.rhs, from_zero || l > 1);
   }
   group.coarse_solver.solve(levels[last].fields.rhs, levels[last].fields.solution);
   for (std::size_t l = last; l-- > 1;) {
@@ -287,6 +289,12 @@ void BasicMultigrid<reactive>::apply_below(const Group& group) const {
     prolong_and_smooth(level.op, level.plan, level.rows, level.transfer, level.fields,
                        levels[l + 1].fields.solution);
   }
+}
+
+template <bool reactive>
+void BasicMultigrid<reactive>::apply_below() const {
+  apply_below(groups_[0]);
+  if (number_of_levels() > 2) apply_below(groups_[0], false);
 }
 
 template <bool reactive>
@@ -330,7 +338,7 @@ std::size_t BasicMultigrid<reactive>::bytes() const {
       total += bytes_of(level.fields.rhs) + bytes_of(level.fields.solution) + bytes_of(level.fields.scratch);
       for (int axis = 0; axis < 3; ++axis)
         if (level.coefficients[axis].is_allocated()) total += bytes_of(level.coefficients[axis]);
-      if (l > 0 && level.reaction.is_allocated()) total += bytes_of(level.reaction);
+      if (l > 0 && level.reaction.is_allocated()) total += bytes_of(level.reaction) + bytes_of(level.mass);
       total += bytes_of(level.rows) + bytes_of(level.transfer.prolongation_rows);
     }
   }

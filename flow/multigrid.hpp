@@ -23,6 +23,8 @@ class BasicMultigrid {
   BasicMultigrid() = default;
   BasicMultigrid(const Int3& cells, const Real3& spacing, const PressureSides& sides);
 
+  /// Takes the place of the own unknowns on the finest level, for hierarchies that are used in turn.
+  void share_finest_fields(const LevelFields& fields) { finest_level().fields = fields; }
   /// Cells outside rows are solid for good. Shares the fractions and derives all levels from them. The same
   /// with the reaction, if any, in units in which an open face along the smallest spacing has coefficient 1.
   void set_open_fractions(const FaceVector<OpenFraction>& open, const RowRanges& rows,
@@ -32,6 +34,8 @@ class BasicMultigrid {
   void set_groups(const std::vector<Box>& boxes, const Field<unsigned char>& group);
   /// All cells are of one group again.
   void join_groups();
+  /// What the reaction of a finest cell holds at least that is no exchange with walls.
+  void set_mass(float mass) { mass_ = mass; }
   int number_of_groups() const { return static_cast<int>(groups_.size()); }
   /// Derives the coarse faces anew that depend on the faces of cells in the boxes.
   void update(const std::vector<Box>& changed);
@@ -39,6 +43,13 @@ class BasicMultigrid {
   /// Right-hand side and result of the V-cycle; zero in cells without an open face.
   const Field<float>& residual() const { return finest_level().fields.rhs; }
   const Field<float>& correction() const { return finest_level().fields.solution; }
+  /// For those who smooth the finest of several levels themselves, with one group: its fields, and
+  /// coarse_correction = two V-cycles of the levels below, applied to coarse_residual.
+  const LevelFields& finest_fields() const { return finest_level().fields; }
+  const Transfer& finest_transfer() const { return finest_level().transfer; }
+  const Field<float>& coarse_residual() const { return groups_[0].levels[1].fields.rhs; }
+  const Field<float>& coarse_correction() const { return groups_[0].levels[1].fields.solution; }
+  void apply_below() const;
   /// correction = V-cycle applied to residual, symmetric and positive; returns correction . residual.
   Real apply() const;
 
@@ -47,6 +58,7 @@ class BasicMultigrid {
   const Operator<OpenFraction>& finest_operator() const { return finest_; }
   const RowRanges& rows() const { return finest_level().rows; }
   const SweepPlan& plan() const { return finest_level().plan; }
+  const LevelShape& finest_shape() const { return finest_level().shape; }
   int number_of_levels() const { return static_cast<int>(groups_[0].levels.size()); }
   std::size_t bytes() const;
 
@@ -57,6 +69,7 @@ class BasicMultigrid {
     FaceVector<float> coefficients;  ///< not on the finest level
     Operator<float> op;              ///< not on the finest level
     Field<float> reaction;           ///< where there is one
+    Field<float> mass;               ///< its part that is no exchange with walls; not on the finest level
     RowRanges rows;
     SweepPlan plan;
     Transfer transfer;  ///< to the next coarser level
@@ -76,11 +89,13 @@ class BasicMultigrid {
   static void set_rows(Group& group, const RowRanges& rows);
   void derive(int group, const std::vector<Box>& pieces);
   void set_coarse_operator(const Group& group) const;
-  void apply_below(const Group& group) const;
+  /// V-cycle from the level below the finest, which begins with zero or with the solution there.
+  void apply_below(const Group& group, bool from_zero = true) const;
   Real apply_by_groups() const;
 
   Real3 weights_{1, 1, 1};
   Real stiffness_ = 1;
+  float mass_ = 0;
   Operator<OpenFraction> finest_;
   FaceVector<OpenFraction> open_;
   Array<unsigned char> open_vectors_;  // on the host, without a reaction

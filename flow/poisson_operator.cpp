@@ -78,18 +78,27 @@ void mark_open_vectors(const LevelOperator<OpenFraction>& op, const BoxList& box
       });
 }
 
-void derive_reaction(const LevelShape& fine, const Field<float>& fine_reaction, const Merging& merging,
-                     const BoxList& boxes, const Field<float>& coarse_reaction) {
-  const Field<float> from = fine_reaction, to = coarse_reaction;
-  const Int3 fine_cells = fine.cells;
+void derive_reaction(const Reaction& fine, const Merging& merging, const BoxList& boxes,
+                     const Field<float>& coarse_total, const Field<float>& coarse_mass) {
+  const Field<float> from = fine.total, from_mass = fine.mass, to = coarse_total, to_mass = coarse_mass;
+  const Int3 fine_cells = fine.shape.cells;
+  const Real cell_mass = fine.cell_mass;
+  const bool has_field = from_mass.is_allocated();
+  Real share = 0;
+  for (int axis = 0; axis < 3; ++axis) share += 1.0 / (3 * merging.ratio[axis]);
   for_each_cell(
       "flow::coarsen_reaction", boxes, KOKKOS_LAMBDA(int i, int j, int k) {
         const Box box = merging.children({i, j, k}, fine_cells);
-        Real sum = 0;
+        Real total = 0, mass = 0;
         for (int c = box.low[2]; c < box.high[2]; ++c)
           for (int b = box.low[1]; b < box.high[1]; ++b)
-            for (int a = box.low[0]; a < box.high[0]; ++a) sum += from(a, b, c);
-        to(i, j, k) = static_cast<float>(sum);
+            for (int a = box.low[0]; a < box.high[0]; ++a) {
+              const Real here = from(a, b, c);
+              total += here;
+              mass += has_field ? Real(from_mass(a, b, c)) : Kokkos::fmin(here, cell_mass);
+            }
+        to_mass(i, j, k) = static_cast<float>(mass);
+        to(i, j, k) = static_cast<float>(mass + share * (total - mass));
       });
 }
 

@@ -330,8 +330,17 @@ void derive_coefficients(const Operator& fine, const LevelShape& coarse, const M
 void mark_open_vectors(const LevelOperator<OpenFraction>& op, const BoxList& boxes,
                        const Array<unsigned char>& open_vectors);
 
-/// Coarse reaction of the cells of the boxes: the sum over the children.
-void derive_reaction(const LevelShape& fine, const Field<float>& fine_reaction, const Merging& merging,
-                     const BoxList& boxes, const Field<float>& coarse_reaction);
+/// The reaction on a level. mass: its part that is no exchange with walls; without a field, at most
+/// cell_mass everywhere.
+struct Reaction {
+  LevelShape shape;
+  Field<float> total, mass;
+  float cell_mass = 0;
+};
+
+/// Coarse reaction of the cells of the boxes: the mass of the children and, as the walls are further away,
+/// a share of their exchange with walls: half of it where cells merge along all axes.
+void derive_reaction(const Reaction& fine, const Merging& merging, const BoxList& boxes,
+                     const Field<float>& coarse_total, const Field<float>& coarse_mass);
 
 }  // namespace peclet::flow

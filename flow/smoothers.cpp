@@ -1,5 +1,7 @@
 #include "flow/smoothers.hpp"
 
+#include "flow/level_transfer.hpp"
+
 namespace peclet::flow {
 namespace {
 
@@ -100,89 +102,6 @@ struct Residual {
   }
 };
 
-/// Coarse cell = sum of its children.
-template <int RatioX>
-struct SumOfChildren {
-  using Result = Nothing;
-  static constexpr bool may_overrun = false;
-  LevelShape fine_shape, coarse_shape;
-  Merging merging;
-  float* fine;
-  float* coarse;
-
-  struct Row {
-    const float *first, *next_y, *next_z, *next_yz;
-    float has_y, has_z;
-    float* coarse;
-    int shift, n;  ///< children beyond the ends of the row do not count
-    KOKKOS_INLINE_FUNCTION float column(int i) const {
-      return first[i] + has_y * next_y[i] + has_z * (next_z[i] + has_y * next_yz[i]);
-    }
-    KOKKOS_INLINE_FUNCTION void operator()(int i) const {
-      if constexpr (RatioX == 1) {
-        coarse[i] = column(i);
-      } else {
-        const int low = 2 * i - shift, high = low + 1;
-        if constexpr (runs_on_host)
-          coarse[i] = column(low) + column(high);
-        else
-          coarse[i] = (low >= 0 ? column(low) : 0) + (high < n ? column(high) : 0);
-      }
-    }
-  };
-  KOKKOS_INLINE_FUNCTION Row row(int J, int K) const {
-    const int j = merging.first_child(1, J), k = merging.first_child(2, K);
-    const int n = fine_shape.cells[0], shift = merging.shift[0];
-    const bool has_y = j + 1 < merging.end_of_children(1, J) && j + 1 < fine_shape.cells[1];
-    const bool has_z = k + 1 < merging.end_of_children(2, K) && k + 1 < fine_shape.cells[2];
-    float* const first = fine + fine_shape.layout(0, j, k);
-    float* const next_y = first + has_y * fine_shape.layout.pitch_y;
-    float* const next_z = first + has_z * fine_shape.layout.pitch_z;
-    float* const next_yz = next_y + (next_z - first);
-    if (runs_on_host) {
-      const int beyond = shift == 1 ? -1 : n;
-      first[beyond] = next_y[beyond] = next_z[beyond] = next_yz[beyond] = 0;
-    }
-    return {first,
-            next_y,
-            next_z,
-            next_yz,
-            has_y ? 1.f : 0.f,
-            has_z ? 1.f : 0.f,
-            coarse + coarse_shape.layout(0, J, K),
-            shift,
-            n};
-  }
-};
-
-/// Every child += coarse cell; runs over coarse cells along fine rows.
-template <int RatioX>
-struct AddToChildren {
-  using Result = Nothing;
-  static constexpr bool may_overrun = false;
-  LevelShape fine_shape, coarse_shape;
-  Merging merging;
-  const float* coarse;
-  float* fine;
-
-  struct Row {
-    const float* coarse;
-    float* fine;
-    KOKKOS_INLINE_FUNCTION void operator()(int i) const {
-      if constexpr (RatioX == 1) {
-        fine[i] += coarse[i];
-      } else {
-        fine[2 * i] += coarse[i];  // beyond the ends of an odd row: a ghost, overwritten before it is read
-        fine[2 * i + 1] += coarse[i];
-      }
-    }
-  };
-  KOKKOS_INLINE_FUNCTION Row row(int j, int k) const {
-    return {coarse + coarse_shape.layout(0, merging.parent(1, j), merging.parent(2, k)),
-            fine + fine_shape.layout(-merging.shift[0], j, k)};
-  }
-};
-
 struct Product {
   using Result = Total;
   static constexpr bool may_overrun = true;
@@ -202,17 +121,23 @@ struct Product {
 template <int RatioX, class Operator>
 void smooth_and_restrict_by(const Operator& op, const SweepPlan& plan, const RowRanges& rows,
                             const Transfer& transfer, const LevelFields& fields,
-                            const Field<float>& coarse_rhs) {
+                            const Field<float>& coarse_rhs, bool from_zero) {
   const float* const rhs = fields.rhs.array().data();
   float* const solution = fields.solution.array().data();
   float* const scratch = fields.scratch.array().data();
-  sweep("flow::smooth", plan, Stage{rows, FirstStep<Operator>{op, rhs, scratch, first_weight}},
-        Stage{rows, JacobiStep<Operator, Nothing>{op, rhs, scratch, solution, second_weight}},
-        CoarseningStage{Stage{rows, Residual<Operator>{op, rhs, solution, scratch}},
-                        Stage{transfer.coarse_rows,
-                              SumOfChildren<RatioX>{op.shape, transfer.coarse_shape, transfer.merging,
-                                                    scratch, coarse_rhs.array().data()}},
-                        transfer.merging.ratio, transfer.merging.shift});
+  const auto after = [&](const auto& first) {
+    sweep("flow::smooth", plan, first,
+          Stage{rows, JacobiStep<Operator, Nothing>{op, rhs, scratch, solution, second_weight}},
+          CoarseningStage{Stage{rows, Residual<Operator>{op, rhs, solution, scratch}},
+                          Stage{transfer.coarse_rows,
+                                SumOfChildren<RatioX>{op.shape, transfer.coarse_shape, transfer.merging,
+                                                      scratch, coarse_rhs.array().data()}},
+                          transfer.merging.ratio, transfer.merging.shift});
+  };
+  if (from_zero)
+    after(Stage{rows, FirstStep<Operator>{op, rhs, scratch, first_weight}});
+  else
+    after(Stage{rows, JacobiStep<Operator, Nothing>{op, rhs, solution, scratch, first_weight}});
 }
 
 template <int RatioX, class Operator>
@@ -235,12 +160,12 @@ Real prolong_and_smooth_by(const Operator& op, const SweepPlan& plan, const RowR
 
 template <class Operator>
 void smooth_and_restrict(const Operator& op, const SweepPlan& plan, const RowRanges& rows,
-                         const Transfer& transfer, const LevelFields& fields,
-                         const Field<float>& coarse_rhs) {
+                         const Transfer& transfer, const LevelFields& fields, const Field<float>& coarse_rhs,
+                         bool from_zero) {
   if (transfer.merging.ratio[0] == 2)
-    smooth_and_restrict_by<2>(op, plan, rows, transfer, fields, coarse_rhs);
+    smooth_and_restrict_by<2>(op, plan, rows, transfer, fields, coarse_rhs, from_zero);
   else
-    smooth_and_restrict_by<1>(op, plan, rows, transfer, fields, coarse_rhs);
+    smooth_and_restrict_by<1>(op, plan, rows, transfer, fields, coarse_rhs, from_zero);
 }
 
 template <class Operator>
@@ -279,19 +204,19 @@ Real dot(const Field<float>& a, const Field<float>& b, const RowRanges& rows, co
 }
 
 template void smooth_and_restrict(const LevelOperator<OpenFraction>&, const SweepPlan&, const RowRanges&,
-                                  const Transfer&, const LevelFields&, const Field<float>&);
+                                  const Transfer&, const LevelFields&, const Field<float>&, bool);
 template Real prolong_and_smooth(const LevelOperator<OpenFraction>&, const SweepPlan&, const RowRanges&,
                                  const Transfer&, const LevelFields&, const Field<float>&);
 template void smooth_and_restrict(const LevelOperator<float>&, const SweepPlan&, const RowRanges&,
-                                  const Transfer&, const LevelFields&, const Field<float>&);
+                                  const Transfer&, const LevelFields&, const Field<float>&, bool);
 template Real prolong_and_smooth(const LevelOperator<float>&, const SweepPlan&, const RowRanges&,
                                  const Transfer&, const LevelFields&, const Field<float>&);
 template void smooth_and_restrict(const ReactiveOperator<OpenFraction>&, const SweepPlan&, const RowRanges&,
-                                  const Transfer&, const LevelFields&, const Field<float>&);
+                                  const Transfer&, const LevelFields&, const Field<float>&, bool);
 template Real prolong_and_smooth(const ReactiveOperator<OpenFraction>&, const SweepPlan&, const RowRanges&,
                                  const Transfer&, const LevelFields&, const Field<float>&);
 template void smooth_and_restrict(const ReactiveOperator<float>&, const SweepPlan&, const RowRanges&,
-                                  const Transfer&, const LevelFields&, const Field<float>&);
+                                  const Transfer&, const LevelFields&, const Field<float>&, bool);
 template Real prolong_and_smooth(const ReactiveOperator<float>&, const SweepPlan&, const RowRanges&,
                                  const Transfer&, const LevelFields&, const Field<float>&);
 

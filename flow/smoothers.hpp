@@ -24,10 +24,11 @@ struct Transfer {
   RowRanges prolongation_rows;  ///< rows of this level, cells of the coarse level along them
 };
 
-/// solution = two steps from zero; coarse_rhs = sum of the residual over the children.
+/// solution = two steps from zero, or from the solution; coarse_rhs = sum of the residual over the children.
 template <class Operator>
 void smooth_and_restrict(const Operator& op, const SweepPlan& plan, const RowRanges& rows,
-                         const Transfer& transfer, const LevelFields& fields, const Field<float>& coarse_rhs);
+                         const Transfer& transfer, const LevelFields& fields, const Field<float>& coarse_rhs,
+                         bool from_zero = true);
 
 /// Adds the coarse solution to every child and smooths; returns solution . rhs.
 template <class Operator>

@@ -192,6 +192,7 @@ void Solver::predict_velocity(const MomentumTerms& terms, Real largest_velocity)
                          boundary_.open()[c],
                          fixed_rows,
                          moving_rows};
+    system.revision = boundary_.revision();
     if (is_advection_implicit()) {
       system.carrier = terms.extrapolated;
       system.advection_step = terms.time_step;

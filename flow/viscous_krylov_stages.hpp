@@ -60,7 +60,7 @@ struct NewSearch {
   }
 };
 
-/// out = A e, from differences: stiff rows would lose the smooth part of e otherwise.
+/// out = A e
 struct RegularProduct {
   using Result = Nothing;
   static constexpr bool may_overrun = true;
@@ -70,19 +70,13 @@ struct RegularProduct {
   Diffusion<float> d;
 
   struct Row {
-    const float* e;
+    ProductRow product;
     float* out;
-    Index sy, sz;
-    float x, y, z;
-    KOKKOS_INLINE_FUNCTION void operator()(int i) const {
-      const float c = e[i];
-      out[i] = c + x * ((c - e[i - 1]) + (c - e[i + 1])) + y * ((c - e[i - sy]) + (c - e[i + sy])) +
-               z * ((c - e[i - sz]) + (c - e[i + sz]));
-    }
+    KOKKOS_INLINE_FUNCTION void operator()(int i) const { out[i] = product(i); }
   };
   KOKKOS_INLINE_FUNCTION Row row(int j, int k) const {
     const Index n = layout(0, j, k);
-    return {e + n, out + n, layout.pitch_y, layout.pitch_z, d.x, d.y, d.z};
+    return {ProductRow(layout, e + n, d), out + n};
   }
 };
 
@@ -92,15 +86,7 @@ struct WallProduct {
   Diffusion<float> diffusion;
 
   KOKKOS_INLINE_FUNCTION void operator()(Index row) const {
-    if (rows.superseded(row)) return;
-    const Index p = rows.face(row);
-    float sum = e[p];
-    for (int d = 0; d < WallRows::directions; ++d) {
-      const Index step = e.layout().stride(d / 2);
-      const float neighbor = rows.is_wall(row, d) ? 0.0F : e[d % 2 ? p + step : p - step];
-      sum += diffusion.along(d / 2) * rows.weight(row, d) * (e[p] - neighbor);
-    }
-    out[p] = sum;
+    if (!rows.superseded(row)) out[rows.face(row)] = wall_product(rows, row, e, diffusion);
   }
 };
 

@@ -21,6 +21,7 @@ struct ViscousSystem {
   WallRows fixed_rows, moving_rows;
   FaceVector<Real> carrier{};  // v, where advection is implicit
   Real advection_step = 0;     // dt; 0: no advection
+  Index revision = -1;         // of open and the rows; -1: unknown
 
   bool is_advected() const { return advection_step > 0; }
   template <class T>
@@ -68,6 +69,34 @@ struct WallRow {
     }
   }
 };
+
+/// A e on regular points of a row, from differences: stiff rows would lose the smooth part of e otherwise.
+struct ProductRow {
+  const float* e;
+  Index sy, sz;
+  float x, y, z;
+
+  KOKKOS_INLINE_FUNCTION ProductRow(const Layout& layout, const float* row, const Diffusion<float>& d)
+      : e(row), sy(layout.pitch_y), sz(layout.pitch_z), x(d.x), y(d.y), z(d.z) {}
+  KOKKOS_INLINE_FUNCTION float operator()(int i) const {
+    const float c = e[i];
+    return c + x * ((c - e[i - 1]) + (c - e[i + 1])) + y * ((c - e[i - sy]) + (c - e[i + sy])) +
+           z * ((c - e[i - sz]) + (c - e[i + sz]));
+  }
+};
+
+/// The same at a wall row.
+KOKKOS_INLINE_FUNCTION float wall_product(const WallRows& rows, Index row, const Field<float>& e,
+                                          const Diffusion<float>& diffusion) {
+  const Index p = rows.face(row);
+  float sum = e[p];
+  for (int d = 0; d < WallRows::directions; ++d) {
+    const Index step = e.layout().stride(d / 2);
+    const float neighbor = rows.is_wall(row, d) ? 0.0F : e[d % 2 ? p + step : p - step];
+    sum += diffusion.along(d / 2) * rows.weight(row, d) * (e[p] - neighbor);
+  }
+  return sum;
+}
 
 /// Part of a stage: the body at wall rows.
 template <class Body>

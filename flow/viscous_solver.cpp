@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <type_traits>
 
 #include "flow/fluid_residual.hpp"
+#include "flow/viscous_sweeps.hpp"
 
 namespace peclet::flow {
 namespace {
@@ -14,66 +14,9 @@ namespace {
 /// Sweeps between two evaluations of the residual in double precision.
 constexpr int sweeps_per_cycle_limit = 40;
 /// Where more sweeps would be needed in all, multigrid is faster.
-constexpr int sweeps_limit = 190;
+constexpr int sweeps_limit = 80;
 /// Reduction that single-precision sweeps can deliver in one cycle.
 constexpr Real cycle_reduction_limit = 1e-5;
-
-/// First sweep from e = 0: e = scale * residual, zero at solid points.
-struct FirstSweep {
-  using Result = Nothing;
-  static constexpr bool may_overrun = true;
-  Layout layout;
-  const OpenFraction* open;
-  const Real* residual;
-  float* e;
-  float scale;
-
-  struct Row {
-    const OpenFraction* open;
-    const Real* residual;
-    float* e;
-    float scale;
-    KOKKOS_INLINE_FUNCTION void operator()(int i) const {
-      e[i] = in_fluid(open[i], scale * static_cast<float>(residual[i]));
-    }
-  };
-  KOKKOS_INLINE_FUNCTION Row row(int j, int k) const {
-    const Index n = layout(0, j, k);
-    return {open + n, residual + n, e + n, scale};
-  }
-};
-
-/// next = (1 - weight) e + scale (residual + neighbours), zero at solid points, which ghosts are taken from.
-struct Sweep {
-  using Result = Nothing;
-  static constexpr bool may_overrun = true;
-  Layout layout;
-  const OpenFraction* open;
-  const Real* residual;
-  const float* e;
-  float* next;
-  Diffusion<float> d;
-  float keep, scale;
-
-  struct Row {
-    const OpenFraction* open;
-    const Real* residual;
-    const float* e;
-    float* next;
-    Index sy, sz;
-    float x, y, z, keep, scale;
-    KOKKOS_INLINE_FUNCTION void operator()(int i) const {
-      const float neighbors =
-          x * (e[i - 1] + e[i + 1]) + y * (e[i - sy] + e[i + sy]) + z * (e[i - sz] + e[i + sz]);
-      next[i] = in_fluid(open[i], keep * e[i] + scale * (static_cast<float>(residual[i]) + neighbors));
-    }
-  };
-  KOKKOS_INLINE_FUNCTION Row row(int j, int k) const {
-    const Index n = layout(0, j, k);
-    return {open + n, residual + n, e + n, next + n, layout.pitch_y, layout.pitch_z,
-            d.x,      d.y,          d.z,   keep,     scale};
-  }
-};
 
 /// residual -= A e and correction += e (or = e) in double precision.
 template <bool is_first>
@@ -104,38 +47,6 @@ struct Accumulate {
   KOKKOS_INLINE_FUNCTION Row row(int j, int k) const {
     const Index n = layout(0, j, k);
     return {e + n, residual + n, correction + n, layout.pitch_y, layout.pitch_z, d.x, d.y, d.z, d.diagonal};
-  }
-};
-
-/// First sweep from e = 0 at walls.
-struct FirstWallSweep {
-  WallRows rows;
-  Field<Real> residual;
-  Field<float> e;
-  Diffusion<float> diffusion;
-  float weight;
-
-  KOKKOS_INLINE_FUNCTION void operator()(Index row) const {
-    if (rows.superseded(row)) return;
-    float diagonal = 1;
-    for (int d = 0; d < WallRows::directions; ++d) diagonal += diffusion.along(d / 2) * rows.weight(row, d);
-    const Index p = rows.face(row);
-    e[p] = weight * static_cast<float>(residual[p]) / diagonal;
-  }
-};
-
-struct WallSweep {
-  WallRows rows;
-  Field<Real> residual;
-  Field<float> e, next;
-  Diffusion<float> diffusion;
-  float weight;
-
-  KOKKOS_INLINE_FUNCTION void operator()(Index row) const {
-    if (rows.superseded(row)) return;
-    const Index p = rows.face(row);
-    const WallRow<float> wall(rows, row, e, diffusion);
-    next[p] = e[p] + weight * ((static_cast<float>(residual[p]) + wall.neighbors) / wall.diagonal - e[p]);
   }
 };
 
@@ -201,17 +112,15 @@ auto advected_residual_stage(const ViscousSystem& system, const Field<float>& e,
                FluidResidual{layout, system.open.data(), residual.data()});
 }
 
-Spectrum bound_spectrum(const ViscousSystem& system) {
-  Real regular = 0, walled = 0;  // sums of the off-diagonal part
-  for (int a = 0; a < 3; ++a) {
-    const Real along = 2 * system.diffusion / (system.grid.spacing[a] * system.grid.spacing[a]);
-    const bool at_wall = a != system.component && (system.sides.side[a][0].prescribes_velocity() ||
-                                                   system.sides.side[a][1].prescribes_velocity());
-    regular += along;
-    walled += at_wall ? 8.0 / 3 * along : 2 * along;
-  }
-  const Real low = 1 / (1 + regular), high = (1 + walled) / (1 + regular);
-  return {0.5 * (low + high), 0.5 * (high - low)};
+/// residual -= A e and correction += e (or = e); returns the norms of the residual that is left.
+template <bool is_first>
+Norms subtract_product(const ViscousSystem& system, const Field<float>& e, const Field<Real>& residual,
+                       const Field<Real>& correction) {
+  if (system.is_advected())
+    return sweep("flow::advected_residual", *system.plan,
+                 advected_residual_stage<is_first>(system, e, residual, correction));
+  return sweep("flow::viscous_residual", *system.plan,
+               residual_stage<is_first>(system, e, residual, correction));
 }
 
 /// Sweeps needed by Chebyshev iteration for a reduction: 1 / T_m(middle / half width) <= reduction in each
@@ -226,21 +135,16 @@ int chebyshev_sweeps(const Spectrum& spectrum, Real reduction) {
   return std::max(1, static_cast<int>(std::ceil(std::min(sweeps, 1e9))));
 }
 
-/// Weight of sweep m of n: inverse of a root of T_n on the spectrum, in an order that keeps intermediate
-/// iterates small (pairs from both ends).
-float chebyshev_weight(int m, int n, const Spectrum& spectrum) {
-  const int root = m % 2 == 0 ? m / 2 : n - 1 - m / 2;
-  const Real cosine = std::cos(std::numbers::pi * (2 * root + 1) / (2.0 * n));
-  return static_cast<float>(1 / (spectrum.middle - spectrum.half_width * cosine));
-}
-
 }  // namespace
 
 ViscousSolver::ViscousSolver(const Layout& layout)
-    : iterate_("flow::viscous_iterate", layout), next_("flow::viscous_next", layout) {}
+    : rhs_("flow::viscous_rhs", layout),
+      iterate_("flow::viscous_iterate", layout),
+      next_("flow::viscous_next", layout) {}
 
 std::size_t ViscousSolver::bytes() const {
-  return 2 * sizeof(float) * iterate_.array().extent(0) + (krylov_ ? krylov_->bytes() : 0);
+  return 3 * sizeof(float) * iterate_.array().extent(0) + (multigrid_ ? multigrid_->bytes() : 0) +
+         (krylov_ ? krylov_->bytes() : 0);
 }
 
 SolverReport ViscousSolver::solve(const ViscousSystem& system, const Field<Real>& residual,
@@ -256,27 +160,34 @@ SolverReport ViscousSolver::solve(const ViscousSystem& system, const Field<Real>
   const auto wanted_reduction = [&](Real least) {
     return norms.largest > 0 ? std::clamp(0.5 * tolerance / norms.largest, least, 0.5) : 0.5;
   };
-  // rows of scalars in small cut cells are beyond the preconditioner
+  // rows of scalars in small cut cells are beyond multigrid
   const bool is_velocity = system.component >= 0;
   const bool is_stiff =
       system.is_advected() ||
       (is_velocity && chebyshev_sweeps(spectrum, wanted_reduction(std::numeric_limits<Real>::min())) >
                           std::min(sweeps_limit, iteration_limit));
-  if (is_stiff) prepare_krylov(system);
-  bool is_first = true;
+  if (is_stiff) prepare_multigrid(system);
+  bool is_first = true, cycles_suffice = is_stiff && multigrid_->is_solver(system);
   int setbacks = 0;
   while (is_first || (norms.largest > tolerance && report.iterations < iteration_limit && setbacks < 2 &&
                       std::isfinite(norms.sum))) {
     const Real before = norms.largest, wanted = wanted_reduction(cycle_reduction_limit);
     const int left = iteration_limit - report.iterations;
     const auto cycle = [&](auto first) {
+      if (cycles_suffice) {
+        ++report.iterations;
+        return multigrid_cycle<first>(system, residual, correction);
+      }
       if (is_stiff) return krylov_cycle<first>(system, residual, correction, before, wanted, left, report);
       const int sweeps = std::min({chebyshev_sweeps(spectrum, wanted), sweeps_per_cycle_limit, left});
       report.iterations += sweeps;
       return run_sweeps<first>(system, residual, correction, sweeps, spectrum);
     };
     norms = is_first ? cycle(std::true_type()) : cycle(std::false_type());
-    if (is_stiff && norms.largest > 0.5 * before) ++setbacks;
+    if (is_stiff && norms.largest > 0.5 * before && ++setbacks == 2 && cycles_suffice) {
+      cycles_suffice = false;
+      setbacks = 0;
+    }
     is_first = false;
   }
   report.residual = scale > 0 ? norms.largest / scale : 0;
@@ -290,25 +201,30 @@ SolverReport ViscousSolver::solve(const ViscousSystem& system, const Field<Real>
   return report;
 }
 
-void ViscousSolver::prepare_krylov(const ViscousSystem& system) {
-  if (!krylov_ || !krylov_->fits(system.sides))
-    krylov_ = std::make_shared<ViscousKrylov>(system.grid, system.sides);
-  krylov_->set_system(system);
+void ViscousSolver::prepare_multigrid(const ViscousSystem& system) {
+  if (!multigrid_ || !multigrid_->fits(system.sides))
+    multigrid_ = std::make_shared<ViscousMultigrid>(system.grid, system.sides);
+  multigrid_->set_system(system);
+}
+
+template <bool is_first>
+Norms ViscousSolver::multigrid_cycle(const ViscousSystem& system, const Field<Real>& residual,
+                                     const Field<Real>& correction) {
+  multigrid_->apply(system, residual);
+  return subtract_product<is_first>(system, multigrid_->correction(), residual, correction);
 }
 
 template <bool is_first>
 Norms ViscousSolver::krylov_cycle(const ViscousSystem& system, const Field<Real>& residual,
                                   const Field<Real>& correction, Real largest, Real wanted, int limit,
                                   SolverReport& report) {
+  if (!krylov_) krylov_ = std::make_shared<ViscousKrylov>(system.layout());
   // what rounding of the iterate leaves of the residual
-  const Real attainable = std::numeric_limits<float>::epsilon() * krylov_->largest_diagonal(system);
+  const Real attainable = std::numeric_limits<float>::epsilon() * multigrid_->largest_diagonal(system);
   const Real reduction = std::min(0.25, std::max(wanted, attainable));
-  report.iterations += krylov_->solve(system, residual, largest, reduction, limit, iterate_, next_);
-  if (system.is_advected())
-    return sweep("flow::advected_residual", *system.plan,
-                 advected_residual_stage<is_first>(system, iterate_, residual, correction));
-  return sweep("flow::viscous_residual", *system.plan,
-               residual_stage<is_first>(system, iterate_, residual, correction));
+  report.iterations +=
+      krylov_->solve(system, *multigrid_, residual, largest, reduction, limit, iterate_, next_);
+  return subtract_product<is_first>(system, iterate_, residual, correction);
 }
 
 template <bool is_first>
@@ -321,19 +237,19 @@ Norms ViscousSolver::run_sweeps(const ViscousSystem& system, const Field<Real>& 
 
   const float first_weight = chebyshev_weight(0, sweeps, spectrum);
   const Stage first(system.rows,
-                    FirstSweep{layout, system.open.data(), residual.data(), iterate_.data(),
-                               first_weight / diffusion.diagonal},
-                    at_walls(fixed, FirstWallSweep{fixed, residual, iterate_, diffusion, first_weight}),
-                    at_walls(moving, FirstWallSweep{moving, residual, iterate_, diffusion, first_weight}),
+                    FirstRegularSweep<Real>{layout, system.open.data(), residual.data(), rhs_.data(),
+                                            iterate_.data(), first_weight / diffusion.diagonal},
+                    at_walls(fixed, FirstWallSweep{fixed, rhs_, iterate_, diffusion, first_weight}),
+                    at_walls(moving, FirstWallSweep{moving, rhs_, iterate_, diffusion, first_weight}),
                     ghosts_of(system, iterate_));
   const auto repeated = [&](int m) {
     const float weight = chebyshev_weight(m + 1, sweeps, spectrum);
     const Field<float>&e = iterates[m % 2], &next = iterates[(m + 1) % 2];
     return Stage(system.rows,
-                 Sweep{layout, system.open.data(), residual.data(), e.data(), next.data(), diffusion,
-                       1.0F - weight, weight / diffusion.diagonal},
-                 at_walls(fixed, WallSweep{fixed, residual, e, next, diffusion, weight}),
-                 at_walls(moving, WallSweep{moving, residual, e, next, diffusion, weight}),
+                 RegularSweep{layout, rhs_.data(), e.data(), next.data(), diffusion, 1.0F - weight,
+                              weight / diffusion.diagonal},
+                 at_walls(fixed, WallSweep{fixed, rhs_, e, next, diffusion, weight}),
+                 at_walls(moving, WallSweep{moving, rhs_, e, next, diffusion, weight}),
                  ghosts_of(system, next));
   };
   const auto last = residual_stage<is_first>(system, iterates[(sweeps - 1) % 2], residual, correction);

@@ -2,25 +2,17 @@
 // Solves (1 + dt U - theta dt nu L) e = residual for one velocity component, L with walls at their true
 // distance, U where advection is implicit.
 //
-// Chebyshev iteration on the operator scaled by its diagonal [Saad2003, section 12.3]: rows are diagonally
-// dominant, so that the scaled operator has its spectrum within [1 - s, 1 + s],
-// s = b / (1 + b), b = theta dt nu sum_a 2 / h_a^2; rows beside a Wall or Inflow side of the box, whose
-// ghosts follow a parabola, reach further, to (1 + 8/3 b) / (1 + b). Sweeps run in single precision on the
-// residual, which is then recomputed in double precision, until the largest residual falls below the
-// tolerance. Where that takes many sweeps, and always with U, ViscousKrylov takes their place: an iteration
-// is one of its.
+// Chebyshev iteration on the operator scaled by its diagonal [Saad2003, section 12.3]. Sweeps run in single
+// precision on the residual, which is then recomputed in double precision, until the largest residual falls
+// below the tolerance. Where that takes many sweeps, cycles of ViscousMultigrid take their place. Where these
+// converge badly, and always with U, ViscousKrylov does. An iteration is a sweep, a cycle or one of its.
 #include <memory>
 
 #include "flow/settings.hpp"
 #include "flow/viscous_krylov.hpp"
-#include "flow/viscous_operator.hpp"
+#include "flow/viscous_sweeps.hpp"
 
 namespace peclet::flow {
-
-/// Interval that holds the eigenvalues of the scaled operator.
-struct Spectrum {
-  Real middle = 1, half_width = 0;
-};
 
 class ViscousSolver {
  public:
@@ -42,14 +34,19 @@ class ViscousSolver {
   Norms run_sweeps(const ViscousSystem& system, const Field<Real>& residual, const Field<Real>& correction,
                    int sweeps, const Spectrum& spectrum);
 
-  void prepare_krylov(const ViscousSystem& system);
+  void prepare_multigrid(const ViscousSystem& system);
+  /// The same with one cycle.
+  template <bool is_first>
+  Norms multigrid_cycle(const ViscousSystem& system, const Field<Real>& residual,
+                        const Field<Real>& correction);
   /// The same with ViscousKrylov: reduces the residual, at first `largest`, to `wanted` times that if it can.
   template <bool is_first>
   Norms krylov_cycle(const ViscousSystem& system, const Field<Real>& residual, const Field<Real>& correction,
                      Real largest, Real wanted, int limit, SolverReport& report);
 
-  Field<float> iterate_, next_;
-  std::shared_ptr<ViscousKrylov> krylov_;  // from the first stiff system on
+  Field<float> rhs_, iterate_, next_;
+  std::shared_ptr<ViscousMultigrid> multigrid_;  // from the first stiff system on
+  std::shared_ptr<ViscousKrylov> krylov_;        // from the first that needs it on
 };
 
 }  // namespace peclet::flow

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 
 #include "boundary_in_tests.hpp"
 
@@ -96,6 +97,20 @@ Index faces_in_common_motion(const ImmersedBoundary& boundary, int c, Real first
       "faces_in_common_motion", faces.count, KOKKOS_LAMBDA(Index n) {
         return faces.velocity(n) == first || faces.velocity(n) == second ? 0.0 : 1.0;
       }));
+}
+
+TEST(ImmersedBoundary, EveryStateHasARevisionOfItsOwn) {
+  BoundaryInTest one({moving(crossing_the_edge, {0.1, 0, 0})}),
+      other({moving(crossing_the_edge, {0.1, 0, 0})});
+  std::set<Index> revisions{one.boundary.revision(), other.boundary.revision()};
+  one.boundary.update(one.bodies, Field<Real>(), {0.1, 1e-2});
+  revisions.insert(one.boundary.revision());
+  one.boundary.refresh_friction(one.bodies);
+  revisions.insert(one.boundary.revision());
+  one.boundary.build(one.bodies, Field<Real>(), {0.1, 1e-2});
+  revisions.insert(one.boundary.revision());
+  revisions.insert(ImmersedBoundary(grid, DomainSides()).revision());
+  EXPECT_EQ(revisions.size(), 6u);
 }
 
 TEST(ImmersedBoundary, BodiesThatMeetAndPartLeaveNoTrace) {
