@@ -1,12 +1,14 @@
 """Time to march a simple cubic array of spheres to its steady flow, and the reference beside it.
 
-Stokes flow driven by a body force through a periodic cube with one sphere. Steady is the flow when the force
-on the sphere differs from the driving force by no more than the tolerance. Both run the calls of 0.5.1 with
-the same time steps, the first of which is the default of the reference. The ratio counts the time up to the
-residual that both reach.
+Stokes flow driven by a body force through a periodic cube with one sphere. The residual of a step is the
+larger of two: what the force on the sphere differs from the driving force, and what the mean velocity
+changes, both relative. In long steps the first alone is small by accident before the flow is steady. Both
+run the calls of 0.5.1 with the same time steps, the first of which is the default of the reference. The ratio
+counts the time of the steps until the residual stays below what both reach.
 """
 
 import argparse
+import itertools
 import sys
 import time
 
@@ -14,6 +16,7 @@ import harness
 import newer_reference
 
 VISCOSITY = 0.1
+STEADY_STEPS = 3  # in a row that make the end
 
 
 def measure(size: int, tolerance: float, time_step: float, most_steps: int) -> dict:
@@ -40,20 +43,29 @@ def measure(size: int, tolerance: float, time_step: float, most_steps: int) -> d
     solver.set_scene(node_ints, node_reals, np.array([ball, -1], dtype=np.int32), instance, True)
     solver.set_solid_from_scene(True)
     driving = force * np.count_nonzero(solver.get_ox() > 0)
-    residuals, seconds, start = [], [], time.perf_counter()
+    residuals, seconds, spent, before = [], [], 0.0, np.inf
     while len(residuals) < most_steps:
+        start = time.perf_counter()
         solver.step()
+        spent += time.perf_counter() - start
         drag = float(solver.hydro_force_torque_reaction()[0, 0, 0])
-        residuals.append(abs(drag / driving - 1))
-        seconds.append(time.perf_counter() - start)
-        if residuals[-1] <= tolerance:
+        velocity = float(np.mean(solver.get_u()))
+        residuals.append(max(abs(drag / driving - 1), abs(1 - before / velocity)))
+        seconds.append(spent)
+        before = velocity
+        if len(residuals) >= STEADY_STEPS and max(residuals[-STEADY_STEPS:]) <= tolerance:
             break
     return {"seconds": seconds, "residuals": residuals}
 
 
+def lasting(one: dict) -> list[float]:
+    """After each step, the largest residual from there on."""
+    return list(itertools.accumulate(reversed(one["residuals"]), max))[::-1]
+
+
 def seconds_to(residual: float, one: dict) -> float:
-    """Until the residual is no larger for the first time."""
-    return next(s for s, r in zip(one["seconds"], one["residuals"], strict=True) if r <= residual)
+    """Until the residual stays no larger."""
+    return next(s for s, r in zip(one["seconds"], lasting(one), strict=True) if r <= residual)
 
 
 def tabulate(options: argparse.Namespace) -> harness.Table:
@@ -79,7 +91,7 @@ def tabulate(options: argparse.Namespace) -> harness.Table:
             rows.append([number, f"{name}, residual after them", one["residuals"][-1], None, None])
             rows.append([number, f"{name}, per step", one["seconds"][-1] / len(one["seconds"]), "s", None])
         if options.reference:
-            residual = max(min(one["residuals"]) for one in found.values())
+            residual = max(min(lasting(one)[: -STEADY_STEPS + 1]) for one in found.values())
             ours, reference = (seconds_to(residual, found[name]) for name in ("ours", "reference"))
             quantity = f"reference / ours, to residual {residual:.2g}"
             ratios.append([number, quantity, reference / ours, None, ">= 30"])
