@@ -4,7 +4,8 @@ Stokes flow driven by a body force through a periodic cube with one sphere. The 
 larger of two: what the force on the sphere differs from the driving force, and what the mean velocity
 changes, both relative. In long steps the first alone is small by accident before the flow is steady. Both
 run the calls of 0.5.1 with the same time steps, the first of which is the default of the reference. The ratio
-counts the time of the steps until the residual stays below what both reach.
+counts the time of the steps until the residual stays below what both reach, in the fastest of several rounds
+of each, taken in turn.
 """
 
 import argparse
@@ -82,8 +83,12 @@ def tabulate(options: argparse.Namespace) -> harness.Table:
             "time_step": time_step,
             "most_steps": options.steps,
         }
+        rounds = [
+            {name: harness.run_child(__file__, task, python=python) for name, python in interpreters.items()}
+            for _ in range(options.rounds)
+        ]
         found = {
-            name: harness.run_child(__file__, task, python=python) for name, python in interpreters.items()
+            name: min((r[name] for r in rounds), key=lambda one: one["seconds"][-1]) for name in interpreters
         }
         number = f"{VISCOSITY * time_step:g}"
         for name, one in found.items():
@@ -109,6 +114,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--size", type=int, default=64, help="cells along each axis")
     parser.add_argument("--tolerance", type=float, default=1e-3)
     parser.add_argument("--steps", type=int, default=40, help="at most")
+    parser.add_argument("--rounds", type=int, default=2)
     parser.add_argument("--time-steps", type=float, nargs="+", default=[50.0, 100.0, 1000.0, 1e4])
     harness.add_reference(parser)
 
