@@ -34,7 +34,7 @@ class BasicMultigrid {
   void set_groups(const std::vector<Box>& boxes, const Field<unsigned char>& group);
   /// All cells are of one group again.
   void join_groups();
-  /// What the reaction of a finest cell holds at least that is no exchange with walls.
+  /// What the reaction of a finest cell holds at most that is no exchange with walls.
   void set_mass(float mass) { mass_ = mass; }
   int number_of_groups() const { return static_cast<int>(groups_.size()); }
   /// Derives the coarse faces anew that depend on the faces of cells in the boxes.
