@@ -60,8 +60,8 @@ struct SumOfChildren {
   }
 };
 
-/// Every child += coarse cell; runs over coarse cells along fine rows.
-template <int RatioX>
+/// Every child, or every one at a fluid point, += coarse cell; runs over coarse cells along fine rows.
+template <int RatioX, bool only_fluid = false>
 struct AddToChildren {
   using Result = Nothing;
   static constexpr bool may_overrun = false;
@@ -69,22 +69,31 @@ struct AddToChildren {
   Merging merging;
   const float* coarse;
   float* fine;
+  const OpenFraction* open = nullptr;  // of the fine points, if only_fluid
 
   struct Row {
     const float* coarse;
     float* fine;
+    const OpenFraction* open;
+    KOKKOS_INLINE_FUNCTION void add(int child, float value) const {
+      if constexpr (only_fluid)
+        fine[child] += static_cast<float>(is_fluid(open[child])) * value;
+      else
+        fine[child] += value;
+    }
     KOKKOS_INLINE_FUNCTION void operator()(int i) const {
       if constexpr (RatioX == 1) {
-        fine[i] += coarse[i];
+        add(i, coarse[i]);
       } else {
-        fine[2 * i] += coarse[i];  // beyond the ends of an odd row: a ghost, overwritten before it is read
-        fine[2 * i + 1] += coarse[i];
+        add(2 * i, coarse[i]);  // beyond the ends of an odd row: a ghost, overwritten before it is read
+        add(2 * i + 1, coarse[i]);
       }
     }
   };
   KOKKOS_INLINE_FUNCTION Row row(int j, int k) const {
-    return {coarse + coarse_shape.layout(0, merging.parent(1, j), merging.parent(2, k)),
-            fine + fine_shape.layout(-merging.shift[0], j, k)};
+    const Index n = fine_shape.layout(-merging.shift[0], j, k);
+    return {coarse + coarse_shape.layout(0, merging.parent(1, j), merging.parent(2, k)), fine + n,
+            only_fluid ? open + n : nullptr};
   }
 };
 

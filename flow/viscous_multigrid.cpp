@@ -136,36 +136,6 @@ struct WallRemainder {
   }
 };
 
-/// e += that of the coarse cell, at fluid points; runs over coarse cells along fine rows.
-template <int RatioX>
-struct AddToFluid {
-  using Result = Nothing;
-  static constexpr bool may_overrun = false;
-  Layout fine, coarse_layout;
-  Merging merging;
-  const OpenFraction* open;
-  const float* coarse;
-  float* e;
-
-  struct Row {
-    const OpenFraction* open;
-    const float* coarse;
-    float* e;
-    KOKKOS_INLINE_FUNCTION void operator()(int i) const {
-      if constexpr (RatioX == 1) {
-        e[i] += in_fluid(open[i], coarse[i]);
-      } else {
-        e[2 * i] += in_fluid(open[2 * i], coarse[i]);  // beyond the ends of an odd row: a ghost
-        e[2 * i + 1] += in_fluid(open[2 * i + 1], coarse[i]);
-      }
-    }
-  };
-  KOKKOS_INLINE_FUNCTION Row row(int j, int k) const {
-    const Index n = fine(-merging.shift[0], j, k);
-    return {open + n, coarse + coarse_layout(0, merging.parent(1, j), merging.parent(2, k)), e + n};
-  }
-};
-
 /// The stages of the finest level.
 template <int RatioX>
 struct FinestLevel {
@@ -191,25 +161,11 @@ struct FinestLevel {
   const Field<float>& iterate(int m) const { return m % 2 ? fields().solution : fields().scratch; }
 
   template <class T>
-  auto first(const T* residual) const {
-    const Field<float>& to = iterate(0);
-    const auto wall = [&](const WallRows& rows) {
-      return at_walls(rows, FirstWallSweep{rows, fields().rhs, to, diffusion, weights[0]});
-    };
-    return Stage(system.rows,
-                 FirstRegularSweep<T>{layout, system.open.data(), residual, fields().rhs.data(), to.data(),
-                                      weights[0] / diffusion.diagonal},
-                 wall(system.fixed_rows), wall(system.moving_rows), ghosts_of(system, to));
+  auto first(const Field<T>& residual) const {
+    return first_sweep(system, residual, fields().rhs, iterate(0), weights[0]);
   }
   auto repeated(int m) const {
-    const Field<float>&from = iterate(m + 1), &to = iterate(m);
-    const auto wall = [&](const WallRows& rows) {
-      return at_walls(rows, WallSweep{rows, fields().rhs, from, to, diffusion, weights[m]});
-    };
-    return Stage(system.rows,
-                 RegularSweep{layout, fields().rhs.data(), from.data(), to.data(), diffusion,
-                              1.0F - weights[m], weights[m] / diffusion.diagonal},
-                 wall(system.fixed_rows), wall(system.moving_rows), ghosts_of(system, to));
+    return next_sweep(system, fields().rhs, iterate(m + 1), iterate(m), weights[m]);
   }
   /// Of every cell, so that none keeps what another component left there.
   auto restriction() const {
@@ -230,8 +186,9 @@ struct FinestLevel {
   auto prolongation() const {
     const Transfer& t = transfer();
     return Stage(t.prolongation_rows,
-                 AddToFluid<RatioX>{layout, t.coarse_shape.layout, t.merging, system.open.data(),
-                                    multigrid.coarse_correction().data(), fields().solution.data()},
+                 AddToChildren<RatioX, true>{multigrid.finest_shape(), t.coarse_shape, t.merging,
+                                             multigrid.coarse_correction().data(), fields().solution.data(),
+                                             system.open.data()},
                  ghosts_of(system, fields().solution));
   }
 };
@@ -267,23 +224,23 @@ void ViscousMultigrid::set_system(const ViscousSystem& system) {
 }
 
 void ViscousMultigrid::apply(const ViscousSystem& system) const {
-  if (!is_solver(system))
-    smooth_relative(system);
-  else if (levels_[0].finest_transfer().merging.ratio[0] == 2)
-    smooth_operator<2>(system, residual().data());
+  if (is_solver(system))
+    apply(system, residual());
   else
-    smooth_operator<1>(system, residual().data());
+    smooth_relative(system);
 }
 
-void ViscousMultigrid::apply(const ViscousSystem& system, const Field<Real>& residual) const {
+template <class T>
+void ViscousMultigrid::apply(const ViscousSystem& system, const Field<T>& residual) const {
   if (levels_[0].finest_transfer().merging.ratio[0] == 2)
-    smooth_operator<2>(system, residual.data());
+    smooth_operator<2>(system, residual);
   else
-    smooth_operator<1>(system, residual.data());
+    smooth_operator<1>(system, residual);
 }
+template void ViscousMultigrid::apply(const ViscousSystem&, const Field<Real>&) const;
 
 template <int RatioX, class T>
-void ViscousMultigrid::smooth_operator(const ViscousSystem& system, const T* residual) const {
+void ViscousMultigrid::smooth_operator(const ViscousSystem& system, const Field<T>& residual) const {
   static_assert(smoothing_sweeps == 4);
   const BasicMultigrid<true>& levels = levels_[system.component];
   const FinestLevel<RatioX> finest(system, levels);

@@ -27,8 +27,9 @@ class ViscousMultigrid {
   const Field<float>& correction() const { return levels_[0].correction(); }
   /// correction = M^-1 residual, ghosts filled; what is left in residual() has no meaning.
   void apply(const ViscousSystem& system) const;
-  /// The same for a residual in double precision, where is_solver(system).
-  void apply(const ViscousSystem& system, const Field<Real>& residual) const;
+  /// The same for a residual elsewhere, in any precision, where is_solver(system).
+  template <class T>
+  void apply(const ViscousSystem& system, const Field<T>& residual) const;
 
   Real largest_diagonal(const ViscousSystem& system) const {
     return Diffusion<Real>(system.grid, taken_[system.component].exchange).diagonal;
@@ -37,7 +38,7 @@ class ViscousMultigrid {
 
  private:
   template <int RatioX, class T>
-  void smooth_operator(const ViscousSystem& system, const T* residual) const;
+  void smooth_operator(const ViscousSystem& system, const Field<T>& residual) const;
   void smooth_relative(const ViscousSystem& system) const;
 
   /// What the levels of a component stand for.

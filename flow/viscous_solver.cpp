@@ -230,27 +230,11 @@ Norms ViscousSolver::krylov_cycle(const ViscousSystem& system, const Field<Real>
 template <bool is_first>
 Norms ViscousSolver::run_sweeps(const ViscousSystem& system, const Field<Real>& residual,
                                 const Field<Real>& correction, int sweeps, const Spectrum& spectrum) {
-  const Layout layout = system.layout();
-  const WallRows &fixed = system.fixed_rows, &moving = system.moving_rows;
-  const Diffusion<float> diffusion(system);
   const Field<float> iterates[2] = {iterate_, next_};
-
-  const float first_weight = chebyshev_weight(0, sweeps, spectrum);
-  const Stage first(system.rows,
-                    FirstRegularSweep<Real>{layout, system.open.data(), residual.data(), rhs_.data(),
-                                            iterate_.data(), first_weight / diffusion.diagonal},
-                    at_walls(fixed, FirstWallSweep{fixed, rhs_, iterate_, diffusion, first_weight}),
-                    at_walls(moving, FirstWallSweep{moving, rhs_, iterate_, diffusion, first_weight}),
-                    ghosts_of(system, iterate_));
+  const auto first = first_sweep(system, residual, rhs_, iterate_, chebyshev_weight(0, sweeps, spectrum));
   const auto repeated = [&](int m) {
-    const float weight = chebyshev_weight(m + 1, sweeps, spectrum);
-    const Field<float>&e = iterates[m % 2], &next = iterates[(m + 1) % 2];
-    return Stage(system.rows,
-                 RegularSweep{layout, rhs_.data(), e.data(), next.data(), diffusion, 1.0F - weight,
-                              weight / diffusion.diagonal},
-                 at_walls(fixed, WallSweep{fixed, rhs_, e, next, diffusion, weight}),
-                 at_walls(moving, WallSweep{moving, rhs_, e, next, diffusion, weight}),
-                 ghosts_of(system, next));
+    return next_sweep(system, rhs_, iterates[m % 2], iterates[(m + 1) % 2],
+                      chebyshev_weight(m + 1, sweeps, spectrum));
   };
   const auto last = residual_stage<is_first>(system, iterates[(sweeps - 1) % 2], residual, correction);
   return sweep_series("flow::viscous_sweeps", *system.plan, first, sweeps - 1, repeated, last);

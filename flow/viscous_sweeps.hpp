@@ -114,4 +114,29 @@ struct WallSweep {
   }
 };
 
+/// Stage: rhs = residual, and e = the first sweep from zero, with that weight.
+template <class T>
+auto first_sweep(const ViscousSystem& system, const Field<T>& residual, const Field<float>& rhs,
+                 const Field<float>& e, float weight) {
+  const Diffusion<float> diffusion(system);
+  const WallRows &fixed = system.fixed_rows, &moving = system.moving_rows;
+  return Stage(system.rows,
+               FirstRegularSweep<T>{system.layout(), system.open.data(), residual.data(), rhs.data(),
+                                    e.data(), weight / diffusion.diagonal},
+               at_walls(fixed, FirstWallSweep{fixed, rhs, e, diffusion, weight}),
+               at_walls(moving, FirstWallSweep{moving, rhs, e, diffusion, weight}), ghosts_of(system, e));
+}
+
+/// Stage: next = the sweep that follows e.
+inline auto next_sweep(const ViscousSystem& system, const Field<float>& rhs, const Field<float>& e,
+                       const Field<float>& next, float weight) {
+  const Diffusion<float> diffusion(system);
+  const WallRows &fixed = system.fixed_rows, &moving = system.moving_rows;
+  return Stage(system.rows,
+               RegularSweep{system.layout(), rhs.data(), e.data(), next.data(), diffusion, 1.0F - weight,
+                            weight / diffusion.diagonal},
+               at_walls(fixed, WallSweep{fixed, rhs, e, next, diffusion, weight}),
+               at_walls(moving, WallSweep{moving, rhs, e, next, diffusion, weight}), ghosts_of(system, next));
+}
+
 }  // namespace peclet::flow
