@@ -100,6 +100,10 @@ bool Bodies::any_moves() const {
   return false;
 }
 
+bool Bodies::any_dynamic() const {
+  return std::any_of(bodies_.begin(), bodies_.end(), [](const Body& body) { return body.dynamic; });
+}
+
 Real Bodies::thickness(int b) const {
   const Body& body = (*this)[b];
   Real smallest = std::numeric_limits<Real>::infinity();

@@ -158,6 +158,7 @@ class Bodies {
   bool center_pinned(int b) const { return pinned_[static_cast<std::size_t>(b)]; }
   bool moves(int b) const;
   bool any_moves() const;
+  bool any_dynamic() const;
   /// Smallest extent of the bounds of body b, over the spacing in that direction; infinite if it vanished.
   Real thickness(int b) const;
   /// Largest of sum |u_a| / h_a over the corners of the bounds of all bodies.

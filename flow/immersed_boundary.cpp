@@ -210,9 +210,7 @@ void ImmersedBoundary::build(Bodies& bodies, const Field<Real>& samples, const W
   friction_ = friction;
   sample_fixed(bodies);
   forget_moving();
-  bool any_dynamic = false;
-  for (int b = 0; b < bodies.count(); ++b) any_dynamic = any_dynamic || bodies[b].dynamic;
-  if (any_dynamic) {
+  if (bodies.any_dynamic()) {
     if (!fixed_sdf_.is_allocated()) {
       fixed_sdf_ = Field<Real>("flow::fixed_sdf", solid_.sdf.layout());
       fixed_owner_ = Field<int>("flow::fixed_owner", solid_.sdf.layout());

@@ -39,23 +39,33 @@ struct Divergence {
   }
 };
 
+/// Bounds the pressure update in cells that are hardly open.
+constexpr float smallest_open_share = 0.1F;
+
+/// weighs: see ProjectionUpdate.
+template <bool weighs>
 struct Projection {
   using Result = Nothing;
   static constexpr bool may_overrun = false;
   Layout layout;
   const OpenFraction *open_x, *open_y, *open_z;
-  const Real *potential, *divergence;
-  Real *u, *v, *w, *pressure;
+  const Real* potential;
+  Real *divergence, *u, *v, *w, *pressure;
   Real3 inverse_spacing;
   Real density_over_time_step, implicit_viscosity;
 
   struct Row {
     const OpenFraction *ox, *oy, *oz;
-    const Real *phi, *divergence;
-    Real *u, *v, *w, *pressure;
+    const Real* phi;
+    Real *divergence, *u, *v, *w, *pressure;
     Index sy, sz;
     Real fx, fy, fz, density_over_time_step, implicit_viscosity;
 
+    /// Mean open part of the faces of a cell.
+    KOKKOS_INLINE_FUNCTION float open_share(int i) const {
+      const int sum = (ox[i] + ox[i + 1]) + (oy[i] + oy[i + sy]) + (oz[i] + oz[i + sz]);
+      return static_cast<float>(open_fraction_unit / 6) * static_cast<float>(sum);
+    }
     KOKKOS_INLINE_FUNCTION void operator()(int i) const {
       const Real here = phi[i];
       const Real x = u[i] - fx * (here - phi[i - 1]);
@@ -64,6 +74,7 @@ struct Projection {
       u[i] = ox[i] ? x : 0.0;
       v[i] = oy[i] ? y : 0.0;
       w[i] = oz[i] ? z : 0.0;
+      if constexpr (weighs) divergence[i] /= Kokkos::fmax(open_share(i), smallest_open_share);
       pressure[i] += density_over_time_step * here - implicit_viscosity * divergence[i];
     }
   };
@@ -87,6 +98,25 @@ struct Projection {
             implicit_viscosity};
   }
 };
+
+template <bool weighs>
+Projection<weighs> projection(const Grid& grid, const FaceVector<OpenFraction>& open,
+                              const ProjectionUpdate& update, const FaceVector<Real>& velocity,
+                              const Field<Real>& pressure) {
+  return {pressure.layout(),
+          open.x.data(),
+          open.y.data(),
+          open.z.data(),
+          update.potential.data(),
+          update.divergence.data(),
+          velocity.x.data(),
+          velocity.y.data(),
+          velocity.z.data(),
+          pressure.data(),
+          Real3{1 / grid.spacing[0], 1 / grid.spacing[1], 1 / grid.spacing[2]},
+          update.density_over_time_step,
+          update.implicit_viscosity};
+}
 
 /// velocity -= grad phi on the faces of the high side along axis.
 void project_high_side(int axis, const Grid& grid, const Field<OpenFraction>& open,
@@ -154,20 +184,12 @@ void apply_projection(const Grid& grid, const SweepPlan& plan, const RowRanges& 
                       const FaceVector<OpenFraction>& open, const DomainSides& sides,
                       const ProjectionUpdate& update, const FaceVector<Real>& velocity,
                       const Field<Real>& pressure) {
-  const Projection body{pressure.layout(),
-                        open.x.data(),
-                        open.y.data(),
-                        open.z.data(),
-                        update.potential.data(),
-                        update.divergence.data(),
-                        velocity.x.data(),
-                        velocity.y.data(),
-                        velocity.z.data(),
-                        pressure.data(),
-                        Real3{1 / grid.spacing[0], 1 / grid.spacing[1], 1 / grid.spacing[2]},
-                        update.density_over_time_step,
-                        update.implicit_viscosity};
-  sweep("flow::apply_projection", plan, Stage{rows, body});
+  if (update.weighs_open_share)
+    sweep("flow::apply_projection", plan,
+          Stage{rows, projection<true>(grid, open, update, velocity, pressure)});
+  else
+    sweep("flow::apply_projection", plan,
+          Stage{rows, projection<false>(grid, open, update, velocity, pressure)});
   for (int axis = 0; axis < 3; ++axis)
     if (sides.side[axis][1].kind == SideKind::Outflow)
       project_high_side(axis, grid, open[axis], update.potential, velocity[axis]);

@@ -253,7 +253,8 @@ void Solver::project_velocity(Real velocity_scale, Real rotational_weight) {
     pressure_report_ = {report.iterations, report.residual, report.converged};
   }
   const ProjectionUpdate update{settings_.density / settings_.time_step,
-                                rotational_weight * settings_.viscosity, potential_, divergence_};
+                                rotational_weight * settings_.viscosity, !bodies_.any_dynamic(), potential_,
+                                divergence_};
   apply_projection(grid_, plan_, boundary_.rows(), boundary_.open(), sides_, update, velocity_, pressure_);
   fill_pressure_ghosts(pressure_, sides_.pressure_sides(), 1, boundary_.ghost_axes());
   fill_pressure_ghosts(divergence_, sides_.pressure_sides(), 1, boundary_.ghost_axes());
