@@ -39,33 +39,75 @@ struct Divergence {
   }
 };
 
-/// Bounds the pressure update in cells that are hardly open.
-constexpr float smallest_open_share = 0.1F;
+/// Divides the divergence by the open part s of each cell: the mean open fraction o of its faces, those
+/// across axis a weighted by 1 / h_a^2 as in div o grad. Sides of the box are closed faces.
+struct DivideByOpenPart {
+  using Result = Nothing;
+  static constexpr bool may_overrun = false;
+  static constexpr float smallest_part = 0.25F;  // cells that are open less would be too close to instability
+  Layout layout;
+  const OpenFraction *open_x, *open_y, *open_z;
+  Real* divergence;
+  float weight[3];
 
-/// weighs: see ProjectionUpdate.
-template <bool weighs>
+  DivideByOpenPart(const Grid& grid, const FaceVector<OpenFraction>& open, const DomainSides& sides,
+                   const Field<Real>& divergence_)
+      : layout(divergence_.layout()),
+        open_x(open.x.data()),
+        open_y(open.y.data()),
+        open_z(open.z.data()),
+        divergence(divergence_.data()) {
+    const PressureSides closing = sides.pressure_sides();
+    Real inverse_square[3], sum = 0;
+    for (int a = 0; a < 3; ++a) {
+      // nothing flows along an axis of one cell between two closed sides
+      const bool is_flat = grid.cells[a] == 1 && closing.side[a][0] == PressureSide::Closed &&
+                           closing.side[a][1] == PressureSide::Closed;
+      inverse_square[a] = is_flat ? 0 : 1 / (grid.spacing[a] * grid.spacing[a]);
+      sum += 2 * inverse_square[a];
+    }
+    for (int a = 0; a < 3; ++a)
+      weight[a] = sum > 0 ? static_cast<float>(open_fraction_unit * inverse_square[a] / sum) : 0;
+  }
+
+  struct Row {
+    const OpenFraction *x, *y, *z;
+    Real* divergence;
+    Index sy, sz;
+    float wx, wy, wz;
+
+    KOKKOS_INLINE_FUNCTION static float both(const OpenFraction* open, int i, Index step) {
+      return static_cast<float>(open[i] + open[i + step]);
+    }
+    KOKKOS_INLINE_FUNCTION void operator()(int i) const {
+      const float part = wx * both(x, i, 1) + wy * both(y, i, sy) + wz * both(z, i, sz);
+      divergence[i] /= Kokkos::fmax(part, smallest_part);
+    }
+  };
+  KOKKOS_INLINE_FUNCTION Row row(int j, int k) const {
+    const Index n = layout(0, j, k);
+    return {open_x + n,     open_y + n, open_z + n, divergence + n, layout.pitch_y,
+            layout.pitch_z, weight[0],  weight[1],  weight[2]};
+  }
+};
+
 struct Projection {
   using Result = Nothing;
   static constexpr bool may_overrun = false;
   Layout layout;
   const OpenFraction *open_x, *open_y, *open_z;
-  const Real* potential;
-  Real *divergence, *u, *v, *w, *pressure;
+  const Real *potential, *divergence;
+  Real *u, *v, *w, *pressure;
   Real3 inverse_spacing;
   Real density_over_time_step, implicit_viscosity;
 
   struct Row {
     const OpenFraction *ox, *oy, *oz;
-    const Real* phi;
-    Real *divergence, *u, *v, *w, *pressure;
+    const Real *phi, *divergence;
+    Real *u, *v, *w, *pressure;
     Index sy, sz;
     Real fx, fy, fz, density_over_time_step, implicit_viscosity;
 
-    /// Mean open part of the faces of a cell.
-    KOKKOS_INLINE_FUNCTION float open_share(int i) const {
-      const int sum = (ox[i] + ox[i + 1]) + (oy[i] + oy[i + sy]) + (oz[i] + oz[i + sz]);
-      return static_cast<float>(open_fraction_unit / 6) * static_cast<float>(sum);
-    }
     KOKKOS_INLINE_FUNCTION void operator()(int i) const {
       const Real here = phi[i];
       const Real x = u[i] - fx * (here - phi[i - 1]);
@@ -74,7 +116,6 @@ struct Projection {
       u[i] = ox[i] ? x : 0.0;
       v[i] = oy[i] ? y : 0.0;
       w[i] = oz[i] ? z : 0.0;
-      if constexpr (weighs) divergence[i] /= Kokkos::fmax(open_share(i), smallest_open_share);
       pressure[i] += density_over_time_step * here - implicit_viscosity * divergence[i];
     }
   };
@@ -98,25 +139,6 @@ struct Projection {
             implicit_viscosity};
   }
 };
-
-template <bool weighs>
-Projection<weighs> projection(const Grid& grid, const FaceVector<OpenFraction>& open,
-                              const ProjectionUpdate& update, const FaceVector<Real>& velocity,
-                              const Field<Real>& pressure) {
-  return {pressure.layout(),
-          open.x.data(),
-          open.y.data(),
-          open.z.data(),
-          update.potential.data(),
-          update.divergence.data(),
-          velocity.x.data(),
-          velocity.y.data(),
-          velocity.z.data(),
-          pressure.data(),
-          Real3{1 / grid.spacing[0], 1 / grid.spacing[1], 1 / grid.spacing[2]},
-          update.density_over_time_step,
-          update.implicit_viscosity};
-}
 
 /// velocity -= grad phi on the faces of the high side along axis.
 void project_high_side(int axis, const Grid& grid, const Field<OpenFraction>& open,
@@ -184,12 +206,24 @@ void apply_projection(const Grid& grid, const SweepPlan& plan, const RowRanges& 
                       const FaceVector<OpenFraction>& open, const DomainSides& sides,
                       const ProjectionUpdate& update, const FaceVector<Real>& velocity,
                       const Field<Real>& pressure) {
-  if (update.weighs_open_share)
+  const Projection body{pressure.layout(),
+                        open.x.data(),
+                        open.y.data(),
+                        open.z.data(),
+                        update.potential.data(),
+                        update.divergence.data(),
+                        velocity.x.data(),
+                        velocity.y.data(),
+                        velocity.z.data(),
+                        pressure.data(),
+                        Real3{1 / grid.spacing[0], 1 / grid.spacing[1], 1 / grid.spacing[2]},
+                        update.density_over_time_step,
+                        update.implicit_viscosity};
+  if (update.weighs_open_part)
     sweep("flow::apply_projection", plan,
-          Stage{rows, projection<true>(grid, open, update, velocity, pressure)});
+          Stage{rows, DivideByOpenPart(grid, open, sides, update.divergence), body});
   else
-    sweep("flow::apply_projection", plan,
-          Stage{rows, projection<false>(grid, open, update, velocity, pressure)});
+    sweep("flow::apply_projection", plan, Stage{rows, body});
   for (int axis = 0; axis < 3; ++axis)
     if (sides.side[axis][1].kind == SideKind::Outflow)
       project_high_side(axis, grid, open[axis], update.potential, velocity[axis]);

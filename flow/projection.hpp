@@ -28,19 +28,19 @@ void add_potential(const RowRanges& rows, const Field<Real>& potential, const Fi
 /// What the pressure correction phi changes.
 struct ProjectionUpdate {
   Real density_over_time_step = 1;
-  Real implicit_viscosity = 0;     // theta mu, or a share of it
-  bool weighs_open_share = false;  // s is that of each cell, else 1
-  Field<Real> potential;           // phi, ghosts filled
-  Field<Real> divergence;          // div F of the predicted velocity; becomes that over s
+  Real implicit_viscosity = 0;    // theta mu, or a share of it
+  bool weighs_open_part = false;  // s is the open part of each cell, else 1
+  Field<Real> potential;          // phi, ghosts filled
+  Field<Real> divergence;         // div F of the predicted velocity; becomes that over s
 };
 
 /// velocity -= grad phi on open faces (those on high Outflow sides included), zero on closed ones, and the
 /// rotational pressure update [TimmermansMinevVanDeVosse1996]
 ///   p += rho / dt phi - theta mu div F(u*) / s.
-/// In long steps the second term alone moves the pressure, an iteration of Uzawa's with the operator
-/// div o (nu L)^-1 grad. Its diagonal in a cell is 1 / mu times the mean open part s of the faces: with s = 1
-/// the pressure of a cell that is open by a tenth needs ten times the steps to settle. Cells about to be
-/// uncovered by a moving body have another divergence, for which a small s would be unstable.
+/// In long steps the second term alone moves the pressure, an iteration of Uzawa's for the operator
+/// div o (nu L)^-1 grad. Its diagonal is 1 / mu times the open part of the cell: with s = 1 the pressure of a
+/// cell that is open by a tenth needs ten times the steps to settle. Cells that a moving body is about to
+/// uncover have another divergence, for which a small s would be unstable.
 void apply_projection(const Grid& grid, const SweepPlan& plan, const RowRanges& rows,
                       const FaceVector<OpenFraction>& open, const DomainSides& sides,
                       const ProjectionUpdate& update, const FaceVector<Real>& velocity,

@@ -114,7 +114,6 @@ void Solver::advance() {
   const Real cell = grid_.smallest_spacing();
   const bool is_viscous = terms.kinematic_viscosity * terms.time_step >= cell * cell;
   const bool stops_backflow = terms.scheme != AdvectionScheme::None && !is_viscous;
-  const Real rotational_share = is_viscous ? viscous_rotational_share(sides_, boundary_.has_slits()) : 1;
   fill_velocity(extrapolated_, 2, stops_backflow);
   fill_pressure_ghosts(pressure_, sides_.pressure_sides(), 1, boundary_.ghost_axes());
 
@@ -122,7 +121,7 @@ void Solver::advance() {
 
   predict_velocity(terms, velocity_scale);
   std::swap(velocity_, previous_);  // velocity_ is now the predicted one
-  project_velocity(velocity_scale, rotational_share * terms.implicit_weight);
+  project_velocity(velocity_scale, is_viscous, terms.implicit_weight);
   impose_body_motion();
   fill_velocity(velocity_, 1);
   carry_scalars(terms.step_ratio > 0 && boundary_.cut_cells().count == 0);
@@ -228,7 +227,7 @@ void Solver::predict_velocity(const MomentumTerms& terms, Real largest_velocity)
   }
 }
 
-void Solver::project_velocity(Real velocity_scale, Real rotational_weight) {
+void Solver::project_velocity(Real velocity_scale, bool is_viscous, Real implicit_weight) {
   for (int c = 0; c < 3; ++c) {
     impose_body_velocity(boundary_.body_faces(c), velocity_[c]);
     impose_predicted_velocity(boundary_.slits(c), velocity_[c]);
@@ -252,9 +251,16 @@ void Solver::project_velocity(Real velocity_scale, Real rotational_weight) {
                   "step(): the pressure solve met a value that is not finite");
     pressure_report_ = {report.iterations, report.residual, report.converged};
   }
-  const ProjectionUpdate update{settings_.density / settings_.time_step,
-                                rotational_weight * settings_.viscosity, !bodies_.any_dynamic(), potential_,
-                                divergence_};
+  ProjectionUpdate update;
+  update.density_over_time_step = settings_.density / settings_.time_step;
+  update.implicit_viscosity = implicit_weight * settings_.viscosity;
+  if (is_viscous) {
+    update.implicit_viscosity *= viscous_rotational_share(sides_, boundary_.has_slits());
+    // cells that a moving body is about to uncover would be unstable
+    update.weighs_open_part = !bodies_.any_dynamic();
+  }
+  update.potential = potential_;
+  update.divergence = divergence_;
   apply_projection(grid_, plan_, boundary_.rows(), boundary_.open(), sides_, update, velocity_, pressure_);
   fill_pressure_ghosts(pressure_, sides_.pressure_sides(), 1, boundary_.ghost_axes());
   fill_pressure_ghosts(divergence_, sides_.pressure_sides(), 1, boundary_.ghost_axes());

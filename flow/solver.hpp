@@ -132,7 +132,7 @@ class Solver {
   Real3 hydrostatic_force() const;
   void return_advective_leak(MomentumTerms& terms);
   void predict_velocity(const MomentumTerms& terms, Real largest_velocity);
-  void project_velocity(Real velocity_scale, Real rotational_weight);
+  void project_velocity(Real velocity_scale, bool is_viscous, Real implicit_weight);
   /// Closed faces in the state move with their body.
   void impose_body_motion();
   /// nu dt, on which the slits depend.
