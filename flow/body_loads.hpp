@@ -6,6 +6,7 @@
 // and is given to the body that owns the wall. In contact cells the pressure around them pushes two bodies
 // apart. Advection hands nothing to walls, see advective_leak(). So
 //   sum of forces = f N - rho / dt sum (u_new - u)   over the N fluid points, to rounding.
+// What the body force gives to the rest of the fluid's volume comes on top, see flow/volume_defect.hpp.
 //
 // Torques are moments of the same terms about the centre of rotation, plus that of the transposed part of the
 // viscous stress: mu n x Omega on a rigid no-slip wall with the normal n into the fluid. Its integral is

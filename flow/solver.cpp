@@ -280,9 +280,26 @@ void Solver::project_velocity(Real velocity_scale, bool is_viscous, Real implici
                                            boundary_.moving_contacts(c), surrounding);
     }
     loads_ = load_collector_.finish();
+    add_force_on_defects();
     for (const BodyLoad& load : loads_)
       require_state(std::isfinite(dot(load.force, load.force) + dot(load.torque, load.torque)),
                     "step(): a load on a body is not finite; the time step may be too small or too large");
+  }
+}
+
+void Solver::add_force_on_defects() {
+  force_on_defects_ = {};
+  const Vec3 force{settings_.body_force[0], settings_.body_force[1], settings_.body_force[2]};
+  if (dot(force, force) == 0) return;
+  const std::vector<VolumeDefect>& defects = volume_defects_.find(boundary_, sides_, bodies_.count());
+  for (std::size_t b = 0; b < defects.size(); ++b) {
+    const VolumeDefect& defect = defects[b];
+    const Vec3 share{force.x * defect.volume.x, force.y * defect.volume.y, force.z * defect.volume.z};
+    force_on_defects_ += share;
+    if (b == loads_.size()) continue;
+    loads_[b].force += share;
+    loads_[b].pressure_force += share;
+    for (int c = 0; c < 3; ++c) loads_[b].torque += force[c] * defect.leverage[c];
   }
 }
 

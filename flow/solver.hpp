@@ -16,6 +16,7 @@
 #include "flow/scalars.hpp"
 #include "flow/settings.hpp"
 #include "flow/viscous_solver.hpp"
+#include "flow/volume_defect.hpp"
 
 namespace peclet::flow {
 
@@ -98,6 +99,8 @@ class Solver {
   /// Density / dt times the velocity change in the last step, summed over the fluid points, times the cell
   /// volume.
   Vec3 momentum_change() const;
+  /// What the body force gave in the last step to the fluid beyond that at fluid points.
+  Vec3 force_on_defects() const { return force_on_defects_; }
   /// Number of fluid points of velocity component c.
   Real fluid_points(int c) const { return fluid_points_[c]; }
 
@@ -132,6 +135,7 @@ class Solver {
   Real3 hydrostatic_force() const;
   void return_advective_leak(MomentumTerms& terms);
   void predict_velocity(const MomentumTerms& terms, Real largest_velocity);
+  void add_force_on_defects();
   void project_velocity(Real velocity_scale, bool is_viscous, Real implicit_weight);
   /// Closed faces in the state move with their body.
   void impose_body_motion();
@@ -178,6 +182,8 @@ class Solver {
   LoadCollector load_collector_;
   CoveredPoints covered_points_;
   std::vector<BodyLoad> loads_;
+  VolumeDefects volume_defects_;
+  Vec3 force_on_defects_;
   SolverReport velocity_report_, pressure_report_;
   StepTimes times_;
   double geometry_time_ = 0;  // since the last step

@@ -60,11 +60,9 @@ class Towed:
     """Step by step, with U the mean velocity relative to the spheres with zero inside.
 
     force: K = F / ((1 - phi) 6 pi mu a U) of the force F on the sphere.
-    drag: K = f L^3 / (6 pi mu a U) of the body force f = F / V_fluid that balances it.
     """
 
     force: np.ndarray
-    drag: np.ndarray
     reynolds: float
 
 
@@ -82,11 +80,9 @@ def towed(
 ) -> Towed:
     """The steps that cover the distance (in cells), after settle steps; start: from the middle of the box.
 
-    A body force f with f V_fluid = F of the step before holds the total momentum of the fluid, so that the
-    mean flow settles. V_fluid is that of the points which the fluid has in the step: it varies by some 0.1 %
-    as the sphere crosses the grid, and (1 - phi) instead would make as much noise. Without a Reynolds number
-    (speed of the sphere times diameter / nu) there is no advection. In their own frame the spheres stay, and
-    the fluid starts with their speed.
+    A body force f with f (1 - phi) L^3 = F of the step before holds the total momentum of the fluid, so that
+    the mean flow settles. Without a Reynolds number (speed of the sphere times diameter / nu) there is no
+    advection. In their own frame the spheres stay, and the fluid starts with their speed.
     """
     speed = 0.01
     radius = radius_of(solid_fraction, cells**3)
@@ -102,22 +98,21 @@ def towed(
         solver.set_state(still + speed, still, still)
     else:
         solver.set_instance_motion(0, (speed, 0, 0))
-    force, forces, drags, relative, fluid = 0.0, [], [], 0.0, 1.0
+    force, forces, relative = 0.0, [], 0.0
+    fluid_volume = (1 - solid_fraction) * cells**3
     for step in range(settle + round(distance / courant)):
         if not in_own_frame:
             center[0] += speed * dt
             solver.set_instance_transform(0, center)
-        solver.set_body_force(force / (cells**3 * fluid), 0, 0)
+        solver.set_body_force(force / fluid_volume, 0, 0)
         solver.step()
         force = solver.hydro_force_torque_reaction()[0, 0, 0]
         u = solver.get_u()
-        fluid = np.count_nonzero(u) / u.size  # solid points show zero
-        relative = u.mean() - (0 if in_own_frame else speed * fluid)
+        fluid_points = np.count_nonzero(u) / u.size  # solid points show zero
+        relative = u.mean() - (0 if in_own_frame else speed * fluid_points)
         if step >= settle:
-            stokes = 6 * np.pi * mu * radius * relative
-            forces.append(force / (1 - solid_fraction) / stokes)
-            drags.append(force / fluid / stokes)
-    return Towed(np.array(forces), np.array(drags), abs(relative) * 2 * radius / mu)
+            forces.append(force / (1 - solid_fraction) / (6 * np.pi * mu * radius * relative))
+    return Towed(np.array(forces), abs(relative) * 2 * radius / mu)
 
 
 def noise(factors: np.ndarray) -> tuple[float, float]:

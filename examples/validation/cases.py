@@ -72,7 +72,7 @@ CASES = (
     ),
     Case(
         "towed spheres",
-        small=lambda: towed_rows(16, 0.25, 1.2e-2, 2e-3, 5e-3),
+        small=lambda: towed_rows(18, 0.25, 1.2e-2, 2e-3, 5e-3),
         full=lambda curves: (
             with_order(lambda n: towed_rows(n, 0.25, 5e-3, 5e-4, 2.2e-3, curves), (12, 24))
             + with_order(lambda n: towed_rows(n, 0.1, 5e-3, 1e-3, 2.2e-3, curves), (12, 24))

@@ -355,6 +355,11 @@ void define_results(nb::class_<Solver>& solver) {
              const Vec3 change = s.momentum_change();
              return std::array<double, 3>{change.x, change.y, change.z};
            })
+      .def("force_on_defects",
+           [](const Solver& s) {
+             const Vec3 force = s.force_on_defects();
+             return std::array<double, 3>{force.x, force.y, force.z};
+           })
       .def("velocity_report", [](const Solver& s) { return report(s.velocity_report()); })
       .def("pressure_report", [](const Solver& s) { return report(s.pressure_report()); })
       .def("times", &times)

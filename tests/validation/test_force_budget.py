@@ -17,12 +17,12 @@ def two_bodies(scheme, velocity, spin):
 
 
 def budget_defect(solver, before):
-    """|sum F + rho/dt sum(u_new - u_old) - f N| over the largest of the three, worst component."""
+    """|sum F + rho/dt sum(u_new - u_old) - f V| over the largest of the three, worst component."""
     fluid = fluid_points(solver)
     change = (
         RHO / DT * np.array([d[m].sum() for d, m in zip(velocities(solver) - before, fluid, strict=True)])
     )
-    supplied = FORCE * fluid.sum(axis=(1, 2, 3))
+    supplied = FORCE * fluid.sum(axis=(1, 2, 3)) + solver.diagnostics.reaction_budget_terms()[1]
     force = solver.hydro_force_torque_reaction()[0].sum(axis=0)
     largest = max(np.abs(force).max(), np.abs(change).max(), np.abs(supplied).max())
     return np.abs(force + change - supplied).max() / largest

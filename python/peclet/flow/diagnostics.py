@@ -109,12 +109,13 @@ class Instruments(ScalarInstruments):
         """Terms of the force budget of the last step, shape (2, 3).
 
         Row 0: density / dt times the sum of the velocity change over the fluid faces, times the cell volume.
-        Row 1: zero, because advection exchanges no momentum with the walls. So the forces on all bodies
-        (and on the solid of set_solid) add up to body force times volume of fluid faces + row 1 - row 0.
+        Row 1: body force times the volume of the fluid less that of the fluid faces, each of which counts as
+        a cell; advection exchanges no momentum with the walls. So the forces on all bodies (and on the solid
+        of set_solid) add up to body force times volume of fluid faces + row 1 - row 0.
         """
         if not self._status.has_budget:
             raise RuntimeError("reaction_budget_terms(): call step() first")
-        return np.array([self._core.momentum_change(), [0.0, 0.0, 0.0]])
+        return np.array([self._core.momentum_change(), self._core.force_on_defects()])
 
     def hydro_force_torque_traction(self) -> NDArray[np.float64]:
         """The reaction force and torque, with a warning: stresses are not taken to the surface here."""

@@ -239,7 +239,9 @@ class Solver(Parameters, Boundaries, Geometry, Fields, Scalars, Instruments):
 
         [0] are the forces, [1] the torques about the centres of rotation (world axes): what the discrete
         equations of the fluid lost to each body. Hydrostatic buoyancy is not in it unless the body force
-        is. Shape (2, 0, 3) without a scene; RuntimeError before the first step().
+        is. A body force counts with the volume of the fluid, of which its points are 0.1 to 1 % more or
+        less (diagnostics.reaction_budget_terms() has the difference). Shape (2, 0, 3) without a scene;
+        RuntimeError before the first step().
         """
         return self._loads("hydro_force_torque_reaction")
 
