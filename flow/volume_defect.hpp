@@ -14,8 +14,8 @@ namespace peclet::flow {
 
 /// Of one body and the points of each component c around it.
 struct VolumeDefect {
-  Vec3 volume;      // [c]: volume of the fluid less that of its points
-  Vec3 leverage[3]; // [c]: torque of a unit force density along c on that volume
+  Vec3 volume;       // [c]: volume of the fluid less that of its points
+  Vec3 leverage[3];  // [c]: torque of a unit force density along c on that volume
 };
 
 /// Integral of (1 + cos(pi s)) / 2 from -1 to s.
@@ -37,7 +37,8 @@ KOKKOS_INLINE_FUNCTION Real smooth_fluid_part(Real distance, Real width) {
 class VolumeDefects {
  public:
   /// One per body, and one more for solid that is no instance.
-  const std::vector<VolumeDefect>& find(const ImmersedBoundary& boundary, const DomainSides& sides, int bodies);
+  const std::vector<VolumeDefect>& find(const ImmersedBoundary& boundary, const DomainSides& sides,
+                                        int bodies);
 
  private:
   ScatterSum sums_;

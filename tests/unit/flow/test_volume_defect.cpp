@@ -16,7 +16,8 @@ using namespace peclet::flow::testing;
 Real fluid_volume(const Flow& flow, int c) {
   VolumeDefects defects;
   Real points = 0;
-  for_fluid_points(flow, c, [&](int i, int j, int k) { points += is_fluid(flow.boundary.open()[c](i, j, k)); });
+  for_fluid_points(flow, c,
+                   [&](int i, int j, int k) { points += is_fluid(flow.boundary.open()[c](i, j, k)); });
   return points * flow.grid.cell_volume() + defects.find(flow.boundary, flow.sides, 0).back().volume[c];
 }
 
@@ -34,7 +35,9 @@ TEST(VolumeDefect, FluidAroundASphereHasItsVolume) {
   const Int3 n{14, 15, 13};
   const Real radius = 4.3, sphere = 4 * std::numbers::pi / 3 * radius * radius * radius;
   const Flow flow(n, {1, 1, 1}, sphere_in_the_middle(n, radius));
-  for (int c = 0; c < 3; ++c) EXPECT_NEAR(flow.grid.number_of_cells() - fluid_volume(flow, c), sphere, 1e-3 * sphere);
+  for (int c = 0; c < 3; ++c)
+    EXPECT_NEAR(static_cast<Real>(flow.grid.number_of_cells()) - fluid_volume(flow, c), sphere,
+                1e-3 * sphere);
 }
 
 TEST(VolumeDefect, PlanesAlongTheGridAreExact) {
