@@ -258,9 +258,11 @@ void BasicMultigrid<reactive>::derive(int group, const std::vector<Box>& pieces)
                           merging, changed_, coefficients);
     else
       derive_coefficients<LevelOperator<OpenFraction>>(finest_, shape, merging, changed_, coefficients);
-    if constexpr (reactive)
-      derive_reaction({levels[l - 1].shape, levels[l - 1].reaction, levels[l - 1].mass, mass_}, merging,
-                      changed_, levels[l].reaction, levels[l].mass);
+    if constexpr (reactive) {
+      const Level& finer = levels[l - 1];
+      derive_reaction({finer.shape, finer.reaction, finer.mass, mass_, l == 1 && from_coarse_centres_},
+                      merging, changed_, levels[l].reaction, levels[l].mass);
+    }
   }
 }
 

@@ -34,8 +34,12 @@ class BasicMultigrid {
   void set_groups(const std::vector<Box>& boxes, const Field<unsigned char>& group);
   /// All cells are of one group again.
   void join_groups();
-  /// What the reaction of a finest cell holds at most that is no exchange with walls.
-  void set_mass(float mass) { mass_ = mass; }
+  /// Of the reaction of a finest cell, what it holds at most that is no exchange with walls, and whether that
+  /// exchange is the one of the next coarser cells, for those who smooth the finest level themselves.
+  void set_mass(float mass, bool from_coarse_centres) {
+    mass_ = mass;
+    from_coarse_centres_ = from_coarse_centres;
+  }
   int number_of_groups() const { return static_cast<int>(groups_.size()); }
   /// Derives the coarse faces anew that depend on the faces of cells in the boxes.
   void update(const std::vector<Box>& changed);
@@ -96,6 +100,7 @@ class BasicMultigrid {
   Real3 weights_{1, 1, 1};
   Real stiffness_ = 1;
   float mass_ = 0;
+  bool from_coarse_centres_ = false;
   Operator<OpenFraction> finest_;
   FaceVector<OpenFraction> open_;
   Array<unsigned char> open_vectors_;  // on the host, without a reaction

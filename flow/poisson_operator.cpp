@@ -85,7 +85,8 @@ void derive_reaction(const Reaction& fine, const Merging& merging, const BoxList
   const Real cell_mass = fine.cell_mass;
   const bool has_field = from_mass.is_allocated();
   Real share = 0;
-  for (int axis = 0; axis < 3; ++axis) share += 1.0 / (3 * merging.ratio[axis]);
+  for (int axis = 0; axis < 3; ++axis)
+    share += fine.from_coarse_centres ? 1.0 / 3 : 1.0 / (3 * merging.ratio[axis]);
   for_each_cell(
       "flow::coarsen_reaction", boxes, KOKKOS_LAMBDA(int i, int j, int k) {
         const Box box = merging.children({i, j, k}, fine_cells);

@@ -331,15 +331,16 @@ void mark_open_vectors(const LevelOperator<OpenFraction>& op, const BoxList& box
                        const Array<unsigned char>& open_vectors);
 
 /// The reaction on a level. mass: its part that is no exchange with walls; without a field, at most
-/// cell_mass everywhere.
+/// cell_mass everywhere. from_coarse_centres: whether the exchange with walls is that of the coarse cells.
 struct Reaction {
   LevelShape shape;
   Field<float> total, mass;
   float cell_mass = 0;
+  bool from_coarse_centres = false;
 };
 
-/// Coarse reaction of the cells of the boxes: the mass of the children and, as the walls are further away,
-/// a share of their exchange with walls: half of it where cells merge along all axes.
+/// Coarse reaction of the cells of the boxes: the mass of the children and their exchange with walls, or, as
+/// the walls are further away from coarse centres, a share of it: half where cells merge along all axes.
 void derive_reaction(const Reaction& fine, const Merging& merging, const BoxList& boxes,
                      const Field<float>& coarse_total, const Field<float>& coarse_mass);
 

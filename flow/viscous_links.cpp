@@ -69,7 +69,8 @@ void fill_regular_rows(const ViscousSystem& system, Real volume, Real share,
       });
 }
 
-/// Wall rows, scaled: exchange with the walls, and on the low or high sides the mean with the neighbour's.
+/// Wall rows, scaled: exchange with the walls, from the centres of the coarse cells, and on
+/// the low or high sides the mean with the neighbour's.
 struct WallLinks {
   WallRows rows;
   Layout layout;
@@ -77,15 +78,21 @@ struct WallLinks {
   Field<float> reaction;
   Real3 along;
   Real share;
+  Merging merging;
   bool is_periodic[3];
 
   KOKKOS_INLINE_FUNCTION void set_reaction(Index row) const {
     if (rows.superseded(row)) return;
     const Index p = rows.face(row);
-    Real sum = reaction[p];
-    for (int d = 0; d < WallRows::directions; ++d)
-      if (rows.is_wall(row, d)) sum += share * along[d / 2] * rows.weight(row, d);
-    reaction[p] = static_cast<float>(row_factor(rows, row) * sum);
+    const Real factor = row_factor(rows, row);
+    Real sum = factor * reaction[p];
+    for (int d = 0; d < WallRows::directions; ++d) {
+      if (!rows.is_wall(row, d)) continue;
+      const Real inverse_distance = factor * rows.weight(row, d);
+      const Real further = distance_to_coarse_centre(merging, d / 2);
+      sum += share * along[d / 2] * inverse_distance / (1 + inverse_distance * further);
+    }
+    reaction[p] = static_cast<float>(sum);
   }
 
   KOKKOS_INLINE_FUNCTION void weaken_links(Index row, int high) const {
@@ -105,9 +112,9 @@ struct WallLinks {
   }
 };
 
-void fill_wall_rows(const ViscousSystem& system, const WallRows& rows, Real share,
+void fill_wall_rows(const ViscousSystem& system, const WallRows& rows, Real share, const Merging& merging,
                     const FaceVector<OpenFraction>& links, const Field<float>& reaction) {
-  WallLinks walls{rows, system.layout(), links, reaction, relative_exchange(system.grid), share, {}};
+  WallLinks walls{rows, system.layout(), links, reaction, relative_exchange(system.grid), share, merging, {}};
   for (int a = 0; a < 3; ++a) walls.is_periodic[a] = system.sides.is_periodic(a);
   for_each("flow::viscous_wall_reaction", rows.count, KOKKOS_LAMBDA(Index row) { walls.set_reaction(row); });
   for (int high = 0; high < 2; ++high)
@@ -191,12 +198,12 @@ Real largest_exchange(const ViscousSystem& system) {
 }
 
 void fill_links(const ViscousSystem& system, Real exchange, const FaceVector<OpenFraction>& links,
-                const Field<float>& reaction) {
+                const Field<float>& reaction, const Merging& merging) {
   const Real volume = std::pow(system.grid.smallest_spacing(), 2) / exchange;
   const Real share = system.diffusion / exchange;
   fill_regular_rows(system, volume, share, links, reaction);
-  fill_wall_rows(system, system.fixed_rows, share, links, reaction);
-  fill_wall_rows(system, system.moving_rows, share, links, reaction);
+  fill_wall_rows(system, system.fixed_rows, share, merging, links, reaction);
+  fill_wall_rows(system, system.moving_rows, share, merging, links, reaction);
   if (system.is_advected()) add_upwind_exchange(system, exchange, links, reaction);
   for (int a = 0; a < 3; ++a) fill_periodic_ghosts(links[a], system.sides.periodicity());
 }

@@ -121,18 +121,39 @@ struct RegularRemainder {
   }
 };
 
-/// Scaled as the relative is.
+/// Scaled as the relative is, and passed on as WallProlongation brings changes back.
 struct WallRemainder {
   WallRows rows;
   Field<float> rhs, e, out;
   Diffusion<float> diffusion;
+  Merging merging;
   float scale;
 
   KOKKOS_INLINE_FUNCTION void operator()(Index row) const {
     if (rows.superseded(row)) return;
     const Index p = rows.face(row);
-    const float factor = scale * static_cast<float>(row_factor(rows, row));
+    const float share = share_of_coarse_change(rows, row, merging);
+    const float factor = scale * static_cast<float>(row_factor(rows, row)) * share;
     out[p] = factor * (rhs[p] - wall_product(rows, row, e, diffusion));
+  }
+};
+
+/// Wall points have got the whole change of their coarse cells and give a part of it back; see OuterPoints
+/// for those on the high side.
+struct WallProlongation {
+  WallRows rows;
+  Field<float> e, coarse;
+  Merging merging;
+
+  KOKKOS_INLINE_FUNCTION void operator()(Index row) const {
+    if (rows.superseded(row)) return;
+    const Index p = rows.face(row);
+    const Int3 at = cell_of(e.layout(), p);
+    for (int a = 0; a < 3; ++a)
+      if (at[a] == e.layout().cells[a]) return;
+    const Index q =
+        coarse.layout()(merging.parent(0, at[0]), merging.parent(1, at[1]), merging.parent(2, at[2]));
+    e[p] -= (1 - share_of_coarse_change(rows, row, merging)) * coarse[q];
   }
 };
 
@@ -170,10 +191,10 @@ struct FinestLevel {
   /// Of every cell, so that none keeps what another component left there.
   auto restriction() const {
     const LevelFields& f = fields();
-    const auto wall = [&](const WallRows& rows) {
-      return at_walls(rows, WallRemainder{rows, f.rhs, f.solution, f.scratch, diffusion, unit});
-    };
     const Transfer& t = transfer();
+    const auto wall = [&](const WallRows& rows) {
+      return at_walls(rows, WallRemainder{rows, f.rhs, f.solution, f.scratch, diffusion, t.merging, unit});
+    };
     return CoarseningStage{
         Stage(RowRanges(layout.cells),
               RegularRemainder{layout, system.open.data(), f.rhs.data(), f.solution.data(), f.scratch.data(),
@@ -185,11 +206,14 @@ struct FinestLevel {
   }
   auto prolongation() const {
     const Transfer& t = transfer();
+    const Field<float>&e = fields().solution, &coarse = multigrid.coarse_correction();
+    const auto wall = [&](const WallRows& rows) {
+      return at_walls(rows, WallProlongation{rows, e, coarse, t.merging});
+    };
     return Stage(t.prolongation_rows,
                  AddToChildren<RatioX, true>{multigrid.finest_shape(), t.coarse_shape, t.merging,
-                                             multigrid.coarse_correction().data(), fields().solution.data(),
-                                             system.open.data()},
-                 ghosts_of(system, fields().solution));
+                                             coarse.data(), e.data(), system.open.data()},
+                 wall(system.fixed_rows), wall(system.moving_rows), ghosts_of(system, e));
   }
 };
 
@@ -217,9 +241,12 @@ void ViscousMultigrid::set_system(const ViscousSystem& system) {
   const bool can_keep = !system.is_advected() && system.revision >= 0;
   if (can_keep && taken.revision == system.revision && taken.diffusion == system.diffusion) return;
   taken = {can_keep ? system.revision : -1, system.diffusion, largest_exchange(system)};
-  fill_links(system, taken.exchange, links_, reaction_);
   BasicMultigrid<true>& levels = levels_[system.component];
-  levels.set_mass(static_cast<float>(std::pow(system.grid.smallest_spacing(), 2) / taken.exchange));
+  const bool smooths_operator = is_solver(system);
+  fill_links(system, taken.exchange, links_, reaction_,
+             smooths_operator ? levels.finest_transfer().merging : Merging());
+  levels.set_mass(static_cast<float>(std::pow(system.grid.smallest_spacing(), 2) / taken.exchange),
+                  smooths_operator);
   levels.update({Box{{0, 0, 0}, system.grid.cells}});
 }
 
