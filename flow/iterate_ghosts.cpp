@@ -90,6 +90,16 @@ GhostRules::GhostRules(const Layout& layout, const DomainSides& sides, int c) {
     }
 }
 
+void IterateGhosts::finish_row_at_side(Index row, int j, int k) const {
+  const Index last = row + layout.cells[0];  // one more: on a high side there may be unknowns beyond
+  for (int axis = 1; axis < 3; ++axis)
+    for (const GhostRule& rule : rules.side[axis]) {
+      if (rule.at != (axis == 1 ? j : k)) continue;
+      PECLET_INDEPENDENT_ITERATIONS
+      for (Index p = row; p <= last; ++p) apply(rule, p);
+    }
+}
+
 void IterateGhosts::finish() const {
   for (int axis = 0; axis < 3; ++axis)
     for (const GhostRule& rule : rules.side[axis]) apply_on_side(*this, axis, rule);

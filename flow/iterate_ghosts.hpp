@@ -19,6 +19,7 @@ struct GhostRule {
   KOKKOS_INLINE_FUNCTION Real value(const float* e, Index p) const {
     return near * Real{e[p + source]} + next * Real{e[p + second]};
   }
+  KOKKOS_INLINE_FUNCTION bool is_copy() const { return near == 1 && next == 0; }
 };
 
 /// Low and high side of each axis: the rules of fill_correction_ghosts.
@@ -37,28 +38,23 @@ struct IterateGhosts {
   float* e;
 
   KOKKOS_INLINE_FUNCTION void apply(const GhostRule& rule, Index p) const {
-    e[p + rule.target] = static_cast<float>(rule.value(e, p));
+    e[p + rule.target] = rule.is_copy() ? e[p + rule.source] : static_cast<float>(rule.value(e, p));
   }
 
   void finish_row(int j, int k) const {
     const Index row = layout(0, j, k);
     for (const GhostRule& rule : rules.side[0])
       if (rule.at >= 0) apply(rule, row + rule.at);
-    for (const GhostRule& rule : rules.side[1])
-      if (rule.at == j) apply_along(rule, row);
-    for (const GhostRule& rule : rules.side[2])
-      if (rule.at == k) apply_along(rule, row);
+    const GhostRule(&y)[2] = rules.side[1], (&z)[2] = rules.side[2];
+    if (j == y[0].at || j == y[1].at || k == z[0].at || k == z[1].at) finish_row_at_side(row, j, k);
   }
 
   /// On a device: all sides after a kernel over all rows.
   void finish() const;
 
  private:
-  /// One cell more than the box has: on a high side there may be unknowns beyond.
-  void apply_along(const GhostRule& rule, Index row) const {
-    PECLET_INDEPENDENT_ITERATIONS
-    for (Index p = row; p <= row + layout.cells[0]; ++p) apply(rule, p);
-  }
+  /// Few rows need it: kept apart, so that the others are short.
+  void finish_row_at_side(Index row, int j, int k) const;
 };
 
 /// Weight of a ghost in A: of diffusion.
