@@ -109,7 +109,8 @@ std::size_t bytes_of(const RowRanges& rows) { return (rows.first.span() + rows.l
 }  // namespace
 
 template <bool reactive>
-BasicMultigrid<reactive>::BasicMultigrid(const Int3& cells, const Real3& spacing, const PressureSides& sides)
+BasicMultigrid<reactive>::BasicMultigrid(const Int3& cells, const Real3& spacing, const PressureSides& sides,
+                                         const LevelFields& finest_fields)
     : groups_(1) {
   Real smallest = std::numeric_limits<Real>::infinity();
   for (int axis = 0; axis < 3; ++axis)
@@ -123,7 +124,7 @@ BasicMultigrid<reactive>::BasicMultigrid(const Int3& cells, const Real3& spacing
   std::vector<Level>& levels = groups_[0].levels;
   LevelShape shape(cells, sides);
   for (;;) {
-    levels.push_back(make_level(shape, static_cast<int>(levels.size())));
+    levels.push_back(make_level(shape, static_cast<int>(levels.size()), finest_fields));
     if (shape.number_of_cells() <= (reactive ? 32 : CoarseSolver::largest_size)) break;
     levels.back().transfer.merging = next_merging(shape, spacing);
     shape = LevelShape(shape, levels.back().transfer.merging);
@@ -132,10 +133,14 @@ BasicMultigrid<reactive>::BasicMultigrid(const Int3& cells, const Real3& spacing
 }
 
 template <bool reactive>
-typename BasicMultigrid<reactive>::Level BasicMultigrid<reactive>::make_level(const LevelShape& shape,
-                                                                              int number) {
+typename BasicMultigrid<reactive>::Level BasicMultigrid<reactive>::make_level(
+    const LevelShape& shape, int number, const LevelFields& finest_fields) {
   Level level;
   level.shape = shape;
+  if (number == 0 && finest_fields.rhs.is_allocated()) {
+    level.fields = finest_fields;
+    return level;
+  }
   const std::string name = "multigrid_" + std::to_string(number);
   level.fields.rhs = Field<float>(name + ".rhs", shape.layout);
   level.fields.solution = Field<float>(name + ".solution", shape.layout);
@@ -153,8 +158,8 @@ typename BasicMultigrid<reactive>::Level BasicMultigrid<reactive>::make_level(co
 }
 
 template <bool reactive>
-void BasicMultigrid<reactive>::set_open_fractions(const FaceVector<OpenFraction>& open, const RowRanges& rows,
-                                                  const Field<float>& reaction) {
+void BasicMultigrid<reactive>::share_open_fractions(const FaceVector<OpenFraction>& open,
+                                                    const RowRanges& rows, const Field<float>& reaction) {
   groups_.resize(1);
   std::vector<Level>& levels = groups_[0].levels;
   open_ = open;
@@ -172,7 +177,13 @@ void BasicMultigrid<reactive>::set_open_fractions(const FaceVector<OpenFraction>
   levels[0].plan = plan_of(levels[0].shape, levels[0].rows, levels[0].transfer);
   clear(levels[0].fields);
   set_rows(groups_[0], levels[0].rows);
-  update({Box{{0, 0, 0}, levels[0].shape.cells}});
+}
+
+template <bool reactive>
+void BasicMultigrid<reactive>::set_open_fractions(const FaceVector<OpenFraction>& open,
+                                                  const RowRanges& rows) {
+  share_open_fractions(open, rows);
+  update({Box{{0, 0, 0}, finest_level().shape.cells}});
 }
 
 template <bool reactive>
@@ -236,14 +247,29 @@ void BasicMultigrid<reactive>::update(const std::vector<Box>& changed) {
     mark_open_vectors(finest_, changed_, open_vectors_);
   }
   for (int g = 0; g < number_of_groups(); ++g) {
-    derive(g, number_of_groups() == 1 ? pieces : std::vector<Box>{groups_[g].rows.box});
-    set_coarse_operator(groups_[g]);
+    derive_coefficients_of(g, number_of_groups() == 1 ? pieces : std::vector<Box>{groups_[g].rows.box});
+    if constexpr (!reactive) set_coarse_operator(groups_[g]);
   }
+  if constexpr (reactive) update_reaction();
 }
 
 template <bool reactive>
-void BasicMultigrid<reactive>::derive(int group, const std::vector<Box>& pieces) {
-  std::vector<Level>& levels = groups_[group].levels;
+void BasicMultigrid<reactive>::update_reaction()
+  requires reactive
+{
+  const std::vector<Level>& levels = groups_[0].levels;
+  for (std::size_t l = 1; l < levels.size(); ++l) {
+    const Level& finer = levels[l - 1];
+    changed_.assign({Box{{0, 0, 0}, levels[l].shape.cells}});
+    derive_reaction({finer.shape, finer.reaction, finer.mass, mass_, l == 1 && from_coarse_centres_},
+                    finer.transfer.merging, changed_, levels[l].reaction, levels[l].mass);
+  }
+  set_coarse_operator(groups_[0]);
+}
+
+template <bool reactive>
+void BasicMultigrid<reactive>::derive_coefficients_of(int group, const std::vector<Box>& pieces) {
+  const std::vector<Level>& levels = groups_[group].levels;
   for (std::size_t l = 1; l < levels.size(); ++l) {
     const LevelShape& shape = levels[l].shape;
     const Merging& merging = levels[l - 1].transfer.merging;
@@ -258,11 +284,6 @@ void BasicMultigrid<reactive>::derive(int group, const std::vector<Box>& pieces)
                           merging, changed_, coefficients);
     else
       derive_coefficients<LevelOperator<OpenFraction>>(finest_, shape, merging, changed_, coefficients);
-    if constexpr (reactive) {
-      const Level& finer = levels[l - 1];
-      derive_reaction({finer.shape, finer.reaction, finer.mass, mass_, l == 1 && from_coarse_centres_},
-                      merging, changed_, levels[l].reaction, levels[l].mass);
-    }
   }
 }
 

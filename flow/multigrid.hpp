@@ -21,14 +21,17 @@ class BasicMultigrid {
 
  public:
   BasicMultigrid() = default;
-  BasicMultigrid(const Int3& cells, const Real3& spacing, const PressureSides& sides);
+  /// finest_fields: unknowns of the finest level, of another hierarchy that is used in turn; else own ones.
+  BasicMultigrid(const Int3& cells, const Real3& spacing, const PressureSides& sides,
+                 const LevelFields& finest_fields = {});
 
-  /// Takes the place of the own unknowns on the finest level, for hierarchies that are used in turn.
-  void share_finest_fields(const LevelFields& fields) { finest_level().fields = fields; }
-  /// Cells outside rows are solid for good. Shares the fractions and derives all levels from them. The same
-  /// with the reaction, if any, in units in which an open face along the smallest spacing has coefficient 1.
-  void set_open_fractions(const FaceVector<OpenFraction>& open, const RowRanges& rows,
-                          const Field<float>& reaction = {});
+  /// Cells outside rows are solid for good. Shares the fractions, to be followed by update() of all cells.
+  /// The same with the reaction, if any, in units in which an open face along the smallest spacing has
+  /// coefficient 1.
+  void share_open_fractions(const FaceVector<OpenFraction>& open, const RowRanges& rows,
+                            const Field<float>& reaction = {});
+  /// The same, and derives all levels from them.
+  void set_open_fractions(const FaceVector<OpenFraction>& open, const RowRanges& rows);
   /// Parts the cells below the finest level by groups of fluid regions: group is the number of the group of
   /// each finest cell, boxes lie around the groups. Shares the field and derives all levels.
   void set_groups(const std::vector<Box>& boxes, const Field<unsigned char>& group);
@@ -41,8 +44,11 @@ class BasicMultigrid {
     from_coarse_centres_ = from_coarse_centres;
   }
   int number_of_groups() const { return static_cast<int>(groups_.size()); }
-  /// Derives the coarse faces anew that depend on the faces of cells in the boxes.
+  /// Derives the coarse faces anew that depend on the faces of cells in the boxes, and the reaction.
   void update(const std::vector<Box>& changed);
+  /// Derives the coarse reaction anew, where the faces are as before.
+  void update_reaction()
+    requires reactive;
 
   /// Right-hand side and result of the V-cycle; zero in cells without an open face.
   const Field<float>& residual() const { return finest_level().fields.rhs; }
@@ -88,10 +94,10 @@ class BasicMultigrid {
 
   const Level& finest_level() const { return groups_[0].levels[0]; }
   Level& finest_level() { return groups_[0].levels[0]; }
-  static Level make_level(const LevelShape& shape, int number);
+  static Level make_level(const LevelShape& shape, int number, const LevelFields& finest_fields = {});
   void add_group();
   static void set_rows(Group& group, const RowRanges& rows);
-  void derive(int group, const std::vector<Box>& pieces);
+  void derive_coefficients_of(int group, const std::vector<Box>& pieces);
   void set_coarse_operator(const Group& group) const;
   /// V-cycle from the level below the finest, which begins with zero or with the solution there.
   void apply_below(const Group& group, bool from_zero = true) const;

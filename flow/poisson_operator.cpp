@@ -96,7 +96,7 @@ void derive_reaction(const Reaction& fine, const Merging& merging, const BoxList
             for (int a = box.low[0]; a < box.high[0]; ++a) {
               const Real here = from(a, b, c);
               total += here;
-              mass += has_field ? Real(from_mass(a, b, c)) : Kokkos::fmin(here, cell_mass);
+              mass += has_field ? Real(from_mass(a, b, c)) : (here < cell_mass ? here : cell_mass);
             }
         to_mass(i, j, k) = static_cast<float>(mass);
         to(i, j, k) = static_cast<float>(mass + share * (total - mass));

@@ -223,10 +223,11 @@ ViscousMultigrid::ViscousMultigrid(const Grid& grid, const DomainSides& sides)
     : sides_(box_sides(sides)),
       links_("flow::viscous_links", Layout(grid.cells)),
       reaction_("flow::viscous_reaction", Layout(grid.cells)) {
+  LevelFields finest;
   for (BasicMultigrid<true>& levels : levels_) {
-    levels = BasicMultigrid<true>(grid.cells, grid.spacing, sides_);
-    levels.share_finest_fields(levels_[0].finest_fields());
-    levels.set_open_fractions(links_, RowRanges(grid.cells), reaction_);
+    levels = BasicMultigrid<true>(grid.cells, grid.spacing, sides_, finest);
+    levels.share_open_fractions(links_, RowRanges(grid.cells), reaction_);
+    finest = levels.finest_fields();
   }
 }
 
@@ -239,7 +240,8 @@ bool ViscousMultigrid::fits(const DomainSides& sides) const {
 void ViscousMultigrid::set_system(const ViscousSystem& system) {
   Taken& taken = taken_[system.component];
   const bool can_keep = !system.is_advected() && system.revision >= 0;
-  if (can_keep && taken.revision == system.revision && taken.diffusion == system.diffusion) return;
+  const bool has_links = can_keep && taken.revision == system.revision;
+  if (has_links && taken.diffusion == system.diffusion) return;
   taken = {can_keep ? system.revision : -1, system.diffusion, largest_exchange(system)};
   BasicMultigrid<true>& levels = levels_[system.component];
   const bool smooths_operator = is_solver(system);
@@ -247,7 +249,10 @@ void ViscousMultigrid::set_system(const ViscousSystem& system) {
              smooths_operator ? levels.finest_transfer().merging : Merging());
   levels.set_mass(static_cast<float>(std::pow(system.grid.smallest_spacing(), 2) / taken.exchange),
                   smooths_operator);
-  levels.update({Box{{0, 0, 0}, system.grid.cells}});
+  if (has_links)
+    levels.update_reaction();
+  else
+    levels.update({Box{{0, 0, 0}, system.grid.cells}});
 }
 
 void ViscousMultigrid::apply(const ViscousSystem& system) const {
