@@ -110,7 +110,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--size", type=int, default=64, help="cells along each axis")
     parser.add_argument("--tolerance", type=float, default=1e-3)
     parser.add_argument("--steps", type=int, default=30)
-    parser.add_argument("--rounds", type=int, default=1)
+    parser.add_argument("--rounds", type=int, default=2)
     parser.add_argument("--time-steps", type=float, nargs="+", default=[100.0, 1000.0, 3000.0, 1e4])
     harness.add_reference(parser)
 
