@@ -254,16 +254,16 @@ void BasicMultigrid<reactive>::update(const std::vector<Box>& changed) {
 }
 
 template <bool reactive>
-void BasicMultigrid<reactive>::update_reaction()
-  requires reactive
-{
+void BasicMultigrid<reactive>::update_reaction() {
   const std::vector<Level>& levels = groups_[0].levels;
-  for (std::size_t l = 1; l < levels.size(); ++l) {
-    const Level& finer = levels[l - 1];
-    changed_.assign({Box{{0, 0, 0}, levels[l].shape.cells}});
-    derive_reaction({finer.shape, finer.reaction, finer.mass, mass_, l == 1 && from_coarse_centres_},
-                    finer.transfer.merging, changed_, levels[l].reaction, levels[l].mass);
-  }
+  if constexpr (reactive)
+    for (std::size_t l = 1; l < levels.size(); ++l) {
+      const Level& finer = levels[l - 1];
+      const std::vector<Box> all{{{0, 0, 0}, levels[l].shape.cells}};
+      changed_.assign(all);
+      derive_reaction({finer.shape, finer.reaction, finer.mass, mass_, l == 1 && from_coarse_centres_},
+                      finer.transfer.merging, changed_, levels[l].reaction, levels[l].mass);
+    }
   set_coarse_operator(groups_[0]);
 }
 

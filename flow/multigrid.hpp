@@ -47,8 +47,7 @@ class BasicMultigrid {
   /// Derives the coarse faces anew that depend on the faces of cells in the boxes, and the reaction.
   void update(const std::vector<Box>& changed);
   /// Derives the coarse reaction anew, where the faces are as before.
-  void update_reaction()
-    requires reactive;
+  void update_reaction();
 
   /// Right-hand side and result of the V-cycle; zero in cells without an open face.
   const Field<float>& residual() const { return finest_level().fields.rhs; }
