@@ -7,20 +7,19 @@ namespace peclet::flow {
 namespace {
 
 /// Exchange of the points beside the sides of the box with zero on the side, in units of the regular one; see
-/// GhostRules.
+/// GhostRules. From the centres of the cells into which the points merge.
 struct SideExchange {
   Real at[3][2] = {};
   bool is_periodic[3] = {};
 
-  SideExchange(const DomainSides& sides, int c) {
+  SideExchange(const DomainSides& sides, int c, const Merging& merging) {
     for (int axis = 0; axis < 3; ++axis) {
       is_periodic[axis] = sides.is_periodic(axis);
       for (int high = 0; high < 2; ++high) {
         const DomainSide& side = sides.side[axis][high];
-        if (axis == c)
-          at[axis][high] = side.kind == SideKind::Outflow ? 0 : 1;
-        else
-          at[axis][high] = side.prescribes_velocity() ? 8.0 / 3 : 0;
+        Real exchange = side.prescribes_velocity() ? 8.0 / 3 : 0;
+        if (axis == c) exchange = side.kind == SideKind::Outflow ? 0 : 1;
+        at[axis][high] = exchange / (1 + exchange * distance_to_coarse_centre(merging, axis));
       }
     }
   }
@@ -35,13 +34,13 @@ Real3 relative_exchange(const Grid& grid) {
 
 /// Links between fluid points by diffusion, and what regular rows have besides. share: of diffusion in the
 /// largest exchange, for which fully_open stands.
-void fill_regular_rows(const ViscousSystem& system, Real volume, Real share,
+void fill_regular_rows(const ViscousSystem& system, Real volume, Real share, const Merging& merging,
                        const FaceVector<OpenFraction>& links, const Field<float>& reaction) {
   const Layout layout = system.layout();
   const Field<OpenFraction> open = system.open;
   const FaceVector<OpenFraction> target = links;
   const Field<float> total = reaction;
-  const SideExchange exchange(system.sides, system.component);
+  const SideExchange exchange(system.sides, system.component, merging);
   const Real3 along = relative_exchange(system.grid);
   const auto link = static_cast<OpenFraction>(share * fully_open);
   const int c = system.component;
@@ -69,8 +68,8 @@ void fill_regular_rows(const ViscousSystem& system, Real volume, Real share,
       });
 }
 
-/// Wall rows, scaled: exchange with the walls, from the centres of the coarse cells, and on
-/// the low or high sides the mean with the neighbour's.
+/// Wall rows, scaled: exchange with the walls, from the centres of the coarse cells, and on the low or high
+/// sides the mean with the neighbour's.
 struct WallLinks {
   WallRows rows;
   Layout layout;
@@ -130,7 +129,9 @@ struct UpwindExchange {
   Real3 unit;  // exchange along each axis that a link of fully_open stands for
 
   UpwindExchange(const ViscousSystem& system, Real largest)
-      : upwind(system.upwind<Real>()), open(system.open), exchange(system.sides, system.component) {
+      : upwind(system.upwind<Real>()),
+        open(system.open),
+        exchange(system.sides, system.component, Merging()) {
     for (int a = 0; a < 3; ++a) unit[a] = largest / (system.grid.spacing[a] * system.grid.spacing[a]);
   }
 
@@ -201,7 +202,7 @@ void fill_links(const ViscousSystem& system, Real exchange, const FaceVector<Ope
                 const Field<float>& reaction, const Merging& merging) {
   const Real volume = std::pow(system.grid.smallest_spacing(), 2) / exchange;
   const Real share = system.diffusion / exchange;
-  fill_regular_rows(system, volume, share, links, reaction);
+  fill_regular_rows(system, volume, share, merging, links, reaction);
   fill_wall_rows(system, system.fixed_rows, share, merging, links, reaction);
   fill_wall_rows(system, system.moving_rows, share, merging, links, reaction);
   if (system.is_advected()) add_upwind_exchange(system, exchange, links, reaction);

@@ -16,8 +16,8 @@ KOKKOS_INLINE_FUNCTION Real row_factor(const WallRows& rows, Index row) {
 }
 
 /// How much further from its wall the centre of a coarse cell lies than the wall point in it, in spacings:
-/// by half of one or not at all, as it holds two points in that direction or one. This between them for both
-/// converges fastest (found by trial).
+/// by half of one or not at all, as it holds two points in that direction or one. A third for both converges
+/// fastest (found by trial).
 KOKKOS_INLINE_FUNCTION Real distance_to_coarse_centre(const Merging& merging, int axis) {
   return merging.ratio[axis] == 2 ? 1.0 / 3 : 0;
 }
