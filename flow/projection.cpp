@@ -81,7 +81,7 @@ struct DivideByOpenPart {
     }
     KOKKOS_INLINE_FUNCTION void operator()(int i) const {
       const float part = wx * both(x, i, 1) + wy * both(y, i, sy) + wz * both(z, i, sz);
-      divergence[i] /= Kokkos::fmax(part, smallest_part);
+      divergence[i] /= Kokkos::max(part, smallest_part);
     }
   };
   KOKKOS_INLINE_FUNCTION Row row(int j, int k) const {
@@ -193,6 +193,23 @@ Real compute_force_divergence(const Grid& grid, const RowRanges& rows, const Fac
                  (static_cast<Real>(o[a][p + result.layout().stride(a)]) - static_cast<Real>(o[a][p]));
         result[p] = sum;
         return Kokkos::abs(sum);
+      });
+}
+
+Real largest_driving_force(const Grid& grid, const RowRanges& rows, const FaceVector<OpenFraction>& open,
+                           const Real3& force, const Field<Real>& potential) {
+  const FaceVector<OpenFraction> o = open;
+  const Field<Real> psi = potential;
+  const Real3 f = force, h = grid.spacing;
+  return max_cells(
+      "flow::largest_driving_force", rows, KOKKOS_LAMBDA(int i, int j, int k) {
+        const Index p = psi.layout()(i, j, k);
+        Real largest = 0;
+        for (int a = 0; a < 3; ++a) {
+          const Real left = f[a] - (psi[p] - psi[p - psi.layout().stride(a)]) / h[a];
+          largest = o[a][p] ? Kokkos::max(largest, Kokkos::abs(left)) : largest;
+        }
+        return largest;
       });
 }
 

@@ -22,6 +22,11 @@ Real compute_divergence(const Grid& grid, const SweepPlan& plan, const RowRanges
 Real compute_force_divergence(const Grid& grid, const RowRanges& rows, const FaceVector<OpenFraction>& open,
                               const Real3& force, const Field<Real>& divergence);
 
+/// Largest magnitude along an axis of what is left of the force on open faces: f - grad psi, the ghosts of
+/// psi filled.
+Real largest_driving_force(const Grid& grid, const RowRanges& rows, const FaceVector<OpenFraction>& open,
+                           const Real3& force, const Field<Real>& potential);
+
 /// pressure += potential
 void add_potential(const RowRanges& rows, const Field<Real>& potential, const Field<Real>& pressure);
 
