@@ -45,7 +45,7 @@ struct RowRanges {
 };
 
 /// Lists and boxes with fewer entries and cells than this are not worth several threads on the host.
-inline constexpr Index smallest_parallel_list = 512, smallest_parallel_box = 8192;
+inline constexpr Index smallest_parallel_list = 512, smallest_parallel_box = 4096;
 inline bool is_serial_list(Index count) { return runs_on_host && count < smallest_parallel_list; }
 inline bool is_serial_box(Index cells) { return runs_on_host && cells < smallest_parallel_box; }
 

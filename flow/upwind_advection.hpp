@@ -45,7 +45,7 @@ struct UpwindAdvection {
     T sum = 0;
     for (int d = 0; d < WallRows::directions; ++d) {
       const Index step = e.layout().stride(d / 2);
-      const T neighbor = rows.is_wall(row, d) ? 0.0F : e[d % 2 ? p + step : p - step];
+      const T neighbor = rows.openness(row, d) * e[d % 2 ? p + step : p - step];
       sum += inflow(p, d) * (e[p] - neighbor);
     }
     return sum;

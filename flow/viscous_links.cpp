@@ -189,8 +189,8 @@ Real largest_exchange(const ViscousSystem& system) {
         const Index p = layout(i, j, k);
         Real largest = 0;
         for (int a = 0; a < 3; ++a) {
-          const Real across = Kokkos::fmax(exchange.across(a, p), exchange.across(a, p + layout.stride(a)));
-          largest = Kokkos::fmax(largest, across / exchange.unit[a]);
+          const Real across = Kokkos::max(exchange.across(a, p), exchange.across(a, p + layout.stride(a)));
+          largest = Kokkos::max(largest, across / exchange.unit[a]);
         }
         return largest;
       });

@@ -9,10 +9,10 @@ namespace peclet::flow {
 /// Factor of a wall row that bounds its exchange with every fluid neighbour by that of a regular row; it
 /// makes the operator nearly symmetric.
 KOKKOS_INLINE_FUNCTION Real row_factor(const WallRows& rows, Index row) {
-  Real largest = 1;
+  float largest = 1;
   for (int d = 0; d < WallRows::directions; ++d)
-    if (!rows.is_wall(row, d)) largest = Kokkos::fmax(largest, static_cast<Real>(rows.weight(row, d)));
-  return 1 / largest;
+    largest = Kokkos::max(largest, rows.openness(row, d) * rows.weight(row, d));
+  return 1 / static_cast<Real>(largest);
 }
 
 /// How much further from its wall the centre of a coarse cell lies than the wall point in it, in spacings:
@@ -26,7 +26,7 @@ KOKKOS_INLINE_FUNCTION Real distance_to_coarse_centre(const Merging& merging, in
 KOKKOS_INLINE_FUNCTION float share_of_coarse_change(const WallRows& rows, Index row, const Merging& merging) {
   Real sum = 0;
   for (int d = 0; d < WallRows::directions; ++d)
-    if (rows.is_wall(row, d)) sum += rows.weight(row, d) * distance_to_coarse_centre(merging, d / 2);
+    sum += (1 - rows.openness(row, d)) * rows.weight(row, d) * distance_to_coarse_centre(merging, d / 2);
   return static_cast<float>(1 / (1 + row_factor(rows, row) * sum));
 }
 

@@ -65,7 +65,7 @@ struct WallRow {
       const T coefficient = diffusion.along(d / 2) * static_cast<T>(rows.weight(row, d));
       const Index step = e.layout().stride(d / 2);
       diagonal += coefficient;
-      neighbors += rows.is_wall(row, d) ? T(0) : coefficient * static_cast<T>(e[d % 2 ? p + step : p - step]);
+      neighbors += rows.openness(row, d) * coefficient * static_cast<T>(e[d % 2 ? p + step : p - step]);
     }
   }
 };
@@ -92,7 +92,7 @@ KOKKOS_INLINE_FUNCTION float wall_product(const WallRows& rows, Index row, const
   float sum = e[p];
   for (int d = 0; d < WallRows::directions; ++d) {
     const Index step = e.layout().stride(d / 2);
-    const float neighbor = rows.is_wall(row, d) ? 0.0F : e[d % 2 ? p + step : p - step];
+    const float neighbor = rows.openness(row, d) * e[d % 2 ? p + step : p - step];
     sum += diffusion.along(d / 2) * rows.weight(row, d) * (e[p] - neighbor);
   }
   return sum;
