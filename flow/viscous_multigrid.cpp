@@ -215,6 +215,21 @@ struct FinestLevel {
                                              coarse.data(), e.data(), system.open.data()},
                  wall(system.fixed_rows), wall(system.moving_rows), ghosts_of(system, e));
   }
+
+  void correct_from_below(const OuterPoints& outer) const {
+    const SweepPlan& plan = *system.plan;
+    multigrid.apply_below();
+    if (outer.exist()) {
+      sweep("flow::viscous_prolong", plan, prolongation());
+      outer.add_coarse(multigrid.finest_shape(), transfer().coarse_shape, transfer().merging,
+                       multigrid.coarse_correction(), multigrid.correction());
+      ghosts_of(system, multigrid.correction()).body.finish();
+      sweep("flow::viscous_smooth", plan, repeated(0), repeated(1), repeated(2), repeated(3));
+    } else {
+      sweep("flow::viscous_prolong", plan, prolongation(), repeated(0), repeated(1), repeated(2),
+            repeated(3));
+    }
+  }
 };
 
 }  // namespace
@@ -257,40 +272,34 @@ void ViscousMultigrid::set_system(const ViscousSystem& system) {
 
 void ViscousMultigrid::apply(const ViscousSystem& system) const {
   if (is_solver(system))
-    apply(system, residual());
+    apply(system, residual(), 1);
   else
     smooth_relative(system);
 }
 
 template <class T>
-void ViscousMultigrid::apply(const ViscousSystem& system, const Field<T>& residual) const {
+void ViscousMultigrid::apply(const ViscousSystem& system, const Field<T>& residual, int cycles) const {
   if (levels_[0].finest_transfer().merging.ratio[0] == 2)
-    smooth_operator<2>(system, residual);
+    smooth_operator<2>(system, residual, cycles);
   else
-    smooth_operator<1>(system, residual);
+    smooth_operator<1>(system, residual, cycles);
 }
-template void ViscousMultigrid::apply(const ViscousSystem&, const Field<Real>&) const;
+template void ViscousMultigrid::apply(const ViscousSystem&, const Field<Real>&, int) const;
 
 template <int RatioX, class T>
-void ViscousMultigrid::smooth_operator(const ViscousSystem& system, const Field<T>& residual) const {
+void ViscousMultigrid::smooth_operator(const ViscousSystem& system, const Field<T>& residual,
+                                       int cycles) const {
   static_assert(smoothing_sweeps == 4);
-  const BasicMultigrid<true>& levels = levels_[system.component];
-  const FinestLevel<RatioX> finest(system, levels);
+  const FinestLevel<RatioX> finest(system, levels_[system.component]);
+  const OuterPoints outer(system, taken_[system.component].exchange);
   const SweepPlan& plan = *system.plan;
   sweep("flow::viscous_restrict", plan, finest.first(residual), finest.repeated(1), finest.repeated(2),
         finest.repeated(3), finest.restriction());
-  levels.apply_below();
-  const OuterPoints outer(system, taken_[system.component].exchange);
-  if (outer.exist()) {
-    sweep("flow::viscous_prolong", plan, finest.prolongation());
-    outer.add_coarse(levels.finest_shape(), finest.transfer().coarse_shape, finest.transfer().merging,
-                     levels.coarse_correction(), correction());
-    ghosts_of(system, correction()).body.finish();
-    sweep("flow::viscous_smooth", plan, finest.repeated(0), finest.repeated(1), finest.repeated(2),
-          finest.repeated(3));
-  } else {
-    sweep("flow::viscous_prolong", plan, finest.prolongation(), finest.repeated(0), finest.repeated(1),
-          finest.repeated(2), finest.repeated(3));
+  finest.correct_from_below(outer);
+  for (int cycle = 1; cycle < cycles; ++cycle) {
+    sweep("flow::viscous_restrict", plan, finest.repeated(0), finest.repeated(1), finest.repeated(2),
+          finest.repeated(3), finest.restriction());
+    finest.correct_from_below(outer);
   }
 }
 

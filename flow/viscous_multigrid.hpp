@@ -1,5 +1,5 @@
 #pragma once
-// One cycle of multigrid on a viscous system, from zero.
+// Cycles of multigrid on a viscous system, from zero.
 //
 // The finest level is smoothed by sweeps on the operator itself, walls and sides included; those below belong
 // to a symmetric relative of it, see viscous_links.hpp. Where advection is implicit, the finest level is
@@ -27,9 +27,9 @@ class ViscousMultigrid {
   const Field<float>& correction() const { return levels_[0].correction(); }
   /// correction = M^-1 residual, ghosts filled; what is left in residual() has no meaning.
   void apply(const ViscousSystem& system) const;
-  /// The same for a residual elsewhere, in any precision, where is_solver(system).
+  /// The same by one or several cycles for a residual elsewhere, in any precision, where is_solver(system).
   template <class T>
-  void apply(const ViscousSystem& system, const Field<T>& residual) const;
+  void apply(const ViscousSystem& system, const Field<T>& residual, int cycles) const;
 
   Real largest_diagonal(const ViscousSystem& system) const {
     return Diffusion<Real>(system.grid, taken_[system.component].exchange).diagonal;
@@ -38,7 +38,7 @@ class ViscousMultigrid {
 
  private:
   template <int RatioX, class T>
-  void smooth_operator(const ViscousSystem& system, const Field<T>& residual) const;
+  void smooth_operator(const ViscousSystem& system, const Field<T>& residual, int cycles) const;
   void smooth_relative(const ViscousSystem& system) const;
 
   /// What the levels of a component stand for.

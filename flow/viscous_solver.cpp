@@ -168,15 +168,16 @@ SolverReport ViscousSolver::solve(const ViscousSystem& system, const Field<Real>
                           std::min(sweeps_limit, iteration_limit));
   if (is_stiff) prepare_multigrid(system);
   bool is_first = true, cycles_suffice = is_stiff && multigrid_->is_solver(system);
-  int setbacks = 0;
+  int setbacks = 0, cycles_at_once = 1;
   while (is_first || (norms.largest > tolerance && report.iterations < iteration_limit && setbacks < 2 &&
                       std::isfinite(norms.sum))) {
     const Real before = norms.largest, wanted = wanted_reduction(cycle_reduction_limit);
     const int left = iteration_limit - report.iterations;
     const auto cycle = [&](auto first) {
       if (cycles_suffice) {
-        ++report.iterations;
-        return multigrid_cycle<first>(system, residual, correction);
+        const int cycles = std::min(cycles_at_once, left);
+        report.iterations += cycles;
+        return multigrid_cycle<first>(system, residual, correction, cycles);
       }
       if (is_stiff) return krylov_cycle<first>(system, residual, correction, before, wanted, left, report);
       const int sweeps = std::min({chebyshev_sweeps(spectrum, wanted), sweeps_per_cycle_limit, left});
@@ -184,9 +185,14 @@ SolverReport ViscousSolver::solve(const ViscousSystem& system, const Field<Real>
       return run_sweeps<first>(system, residual, correction, sweeps, spectrum);
     };
     norms = is_first ? cycle(std::true_type()) : cycle(std::false_type());
-    if (is_stiff && norms.largest > 0.5 * before && ++setbacks == 2 && cycles_suffice) {
+    // What a cycle leaves of the residual. Where one more will not do, two share a residual in double
+    // precision.
+    const Real left_by_one = std::pow(norms.largest / before, 1.0 / cycles_at_once);
+    cycles_at_once = cycles_suffice && left_by_one * norms.largest > tolerance ? 2 : 1;
+    if (is_stiff && left_by_one > 0.5 && ++setbacks == 2 && cycles_suffice) {
       cycles_suffice = false;
       setbacks = 0;
+      cycles_at_once = 1;
     }
     is_first = false;
   }
@@ -209,8 +215,8 @@ void ViscousSolver::prepare_multigrid(const ViscousSystem& system) {
 
 template <bool is_first>
 Norms ViscousSolver::multigrid_cycle(const ViscousSystem& system, const Field<Real>& residual,
-                                     const Field<Real>& correction) {
-  multigrid_->apply(system, residual);
+                                     const Field<Real>& correction, int cycles) {
+  multigrid_->apply(system, residual, cycles);
   return subtract_product<is_first>(system, multigrid_->correction(), residual, correction);
 }
 

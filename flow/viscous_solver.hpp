@@ -35,10 +35,10 @@ class ViscousSolver {
                    int sweeps, const Spectrum& spectrum);
 
   void prepare_multigrid(const ViscousSystem& system);
-  /// The same with one cycle.
+  /// The same with that many cycles.
   template <bool is_first>
   Norms multigrid_cycle(const ViscousSystem& system, const Field<Real>& residual,
-                        const Field<Real>& correction);
+                        const Field<Real>& correction, int cycles);
   /// The same with ViscousKrylov: reduces the residual, at first `largest`, to `wanted` times that if it can.
   template <bool is_first>
   Norms krylov_cycle(const ViscousSystem& system, const Field<Real>& residual, const Field<Real>& correction,

@@ -12,7 +12,7 @@ using namespace testing;
 /// Largest residual that a cycle leaves, and the residual.
 Real cycle(const ViscousMultigrid& multigrid, const Flow& flow, const ViscousSystem& system,
            const Field<Real>& residual) {
-  multigrid.apply(system, residual);
+  multigrid.apply(system, residual, 1);
   const Layout layout(flow.grid.cells);
   const Field<Real> correction("correction", layout);
   for_fluid_points(flow, system.component,
@@ -61,7 +61,7 @@ TEST(ViscousMultigrid, CyclesConvergeInATankAndBetweenSides) {
 }
 
 std::vector<float> result(const ViscousMultigrid& multigrid, const Flow& flow, const ViscousSystem& system) {
-  multigrid.apply(system, random_velocity(flow, system.component, 5));
+  multigrid.apply(system, random_velocity(flow, system.component, 5), 1);
   std::vector<float> values;
   for_fluid_points(flow, system.component,
                    [&](int i, int j, int k) { values.push_back(multigrid.correction()(i, j, k)); });
