@@ -72,6 +72,18 @@ def test_ends_at_max_steps_or_by_callback():
     assert (result.converged, result.reason) == (False, "stopped by callback")
 
 
+def test_monitor_without_arguments_and_callback_with_two():
+    solver, seen = channel(), []
+    result = flow.march_to_steady(
+        solver,
+        lambda: solver.get_u().mean(),
+        max_steps=10,
+        callback=lambda steps, phase: seen.append((steps, phase)),
+    )
+    assert result.monitor == result.value == solver.get_u().mean()
+    assert seen[:2] == [(5, "accelerate"), (10, "accelerate")]
+
+
 def test_a_slow_drift_is_not_taken_for_the_end():
     values = iter(1 - 0.5 * 0.9995 ** np.arange(1000))
     result = flow.march_to_steady(

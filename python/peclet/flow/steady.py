@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import functools
+import inspect
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -21,8 +23,8 @@ class SteadyResult:
     """How a march went.
 
     converged: whether the stop was certified. steps: steps made. reason: in words. residual: estimate of what
-    the monitored value would still change, relative to it. value: the monitored value. history: (step, value)
-    of every check.
+    the monitored value would still change, relative to it. value: the monitored value, also called monitor.
+    history: (step, value) of every check.
     """
 
     converged: bool
@@ -32,10 +34,15 @@ class SteadyResult:
     value: float
     history: list[tuple[int, float]] = field(repr=False)
 
+    @property
+    def monitor(self) -> float:
+        """The monitored value."""
+        return self.value
+
 
 def march_to_steady(
     solver: Any,
-    monitor: Callable[[Any], float],
+    monitor: Callable[[Any], float] | Callable[[], float],
     rtol: float = 1e-4,
     max_steps: int = 5000,
     accelerate: bool = True,
@@ -44,9 +51,11 @@ def march_to_steady(
     num_passes: int = 3,
     slow_rate: float = 0.997,
     roundoff: float = 1e-11,
-    callback: Callable[[SteadyResult], object] | None = None,
+    callback: Callable[[SteadyResult], object] | Callable[[int, str], object] | None = None,
 ) -> SteadyResult:
     """Step until monitor(solver), one number such as a force or a mean velocity, has settled.
+
+    The monitor may also take no argument.
 
     Every check_every steps the value is looked at. From its last two changes d1, d2 the rest of a geometric
     decay is estimated, |d2| q / (1 - q) with q = |d2 / d1| (at most slow_rate, so that a slow drift is not
@@ -55,7 +64,8 @@ def march_to_steady(
 
     accelerate: between checks, replace the state by the combination of the last window states whose change
     is smallest [WalkerNi2011]; a step that makes the change grow is taken back and the memory is dropped. The
-    time of the solver then has no meaning. callback(result so far) ends the march by returning True.
+    time of the solver then has no meaning. callback(result so far), or callback(steps, phase) with the phase
+    "accelerate" or "certify" (plain steps) if it takes two arguments, ends the march by returning True.
 
     Raises ValueError or TypeError naming the argument. What step() raises passes through.
 
@@ -80,6 +90,8 @@ def march_to_steady(
     if not callable(monitor):
         raise _checks.wrong_type("monitor", "a function of the solver", monitor)
 
+    read_monitor = functools.partial(monitor, *[solver][: _number_of_arguments(monitor, otherwise=1)])
+
     settling = _Settling(rtol, num_passes, slow_rate, roundoff)
     mixing = _Anderson(window) if accelerate else None
     steps = 0
@@ -88,9 +100,9 @@ def march_to_steady(
         for _ in range(min(check_every, max_steps - steps)):
             solver.step()
             steps += 1
-        settling.add(steps, _number(monitor(solver)))
+        settling.add(steps, _number(read_monitor()))
         result = settling.result(steps)
-        if callback is not None and callback(result) is True:
+        if callback is not None and _report(callback, result, mixing is not None) is True:
             return settling.result(steps, "stopped by callback")
         if result.converged:
             return result
@@ -170,6 +182,24 @@ class _Anderson:
         ones = np.ones(len(f))
         weights = np.linalg.lstsq(gram + 1e-14 * size * np.eye(len(f)), ones, rcond=None)[0]
         return weights / weights.sum()
+
+
+def _number_of_arguments(function: Callable[..., Any], otherwise: int) -> int:
+    """How many arguments without a default a function takes, if it tells."""
+    try:
+        parameters = inspect.signature(function).parameters.values()
+    except ValueError:
+        return otherwise
+    positional = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
+    if any(p.kind == inspect.Parameter.VAR_POSITIONAL for p in parameters):
+        return otherwise
+    return sum(p.kind in positional and p.default is inspect.Parameter.empty for p in parameters)
+
+
+def _report(callback: Callable[..., object], result: SteadyResult, is_accelerated: bool) -> object:
+    if _number_of_arguments(callback, otherwise=1) == 2:
+        return callback(result.steps, "accelerate" if is_accelerated else "certify")
+    return callback(result)
 
 
 def _number(value: Any) -> float:
