@@ -29,9 +29,9 @@ constexpr Real divergence_rounding = 1e-13;
 /// Largest divergence after the projection, relative to velocity / spacing.
 constexpr Real divergence_limit = 3e-9;
 
-/// Residual of the pressure that balances the body force at the start: where the force sets fluid in motion,
-/// and where it leaves less than that share of itself to do so, as all should stay at rest.
-constexpr Real driven_tolerance = 1e-6, rest_tolerance = 1e-12, rest_share = 1e-3;
+/// Residual of the pressure that balances the body force, times the share of the force that it leaves to
+/// drive the fluid: where there is none, all stays at rest to rounding.
+constexpr Real balance_tolerance = 1e-6, rest_tolerance = 1e-12;
 /// Velocity that counts as rest, relative to what the body force would give the fluid in a step if no
 /// pressure balanced it: the tolerance of the viscous solve then is above what rounding leaves of the two.
 constexpr Real rest_velocity = 1e-6;
@@ -151,11 +151,13 @@ void Solver::balance_body_force() {
   if (largest == 0) return;
   PressureSettings limits;
   limits.max_iterations = settings_.pressure_iteration_limit;
-  limits.relative_tolerance = driven_tolerance;
+  limits.relative_tolerance = balance_tolerance;
   pressure_solver_.solve(divergence_, potential_, limits);
-  const Real driving = largest_driving_force(grid_, boundary_.rows(), boundary_.open(), force, potential_);
-  if (driving < rest_share * std::hypot(force[0], force[1], force[2])) {
-    limits.relative_tolerance = rest_tolerance;
+  const Real driving_share =
+      largest_driving_force(grid_, boundary_.rows(), boundary_.open(), force, potential_) /
+      std::hypot(force[0], force[1], force[2]);
+  if (driving_share < 1) {
+    limits.relative_tolerance = std::max(rest_tolerance, balance_tolerance * driving_share);
     pressure_solver_.solve(divergence_, potential_, limits);
   }
   add_potential(boundary_.rows(), potential_, pressure_);
