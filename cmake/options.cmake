@@ -15,6 +15,7 @@ option(PECLET_NATIVE "Use every instruction of this machine (OFF: a portable set
 option(PECLET_WERROR "Show all warnings of our own code and treat them as errors" OFF)
 option(PECLET_PYTHON "Build the Python modules" ON)
 option(PECLET_TESTS "Build the C++ unit tests" OFF)
+option(PECLET_DEVICE_LOOPS "Give loops on the host the form that a GPU gives them, to test it without one" OFF)
 
 if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
@@ -52,5 +53,8 @@ target_compile_options(
                            -fno-math-errno -fno-trapping-math)
 if(PECLET_WERROR)
   target_compile_options(peclet_options INTERFACE -Wall -Wextra -Wconversion -Werror)
+endif()
+if(PECLET_DEVICE_LOOPS)
+  target_compile_definitions(peclet_options INTERFACE PECLET_DEVICE_LOOPS)
 endif()
 target_include_directories(peclet_options INTERFACE "${PECLET_SOURCE_DIR}")

@@ -25,7 +25,15 @@ using Array = Kokkos::View<T*, MemorySpace>;
 using Int3 = Kokkos::Array<int, 3>;
 using Real3 = Kokkos::Array<Real, 3>;
 
-/// True where kernels run on the host, so that rows can be walked by one thread.
-inline constexpr bool runs_on_host = Kokkos::SpaceAccessibility<Kokkos::HostSpace, MemorySpace>::accessible;
+/// Whether the host can read and write what kernels do.
+inline constexpr bool is_host_memory = Kokkos::SpaceAccessibility<Kokkos::HostSpace, MemorySpace>::accessible;
+
+/// True where kernels run on the host, so that rows can be walked by one thread. With PECLET_DEVICE_LOOPS
+/// never: loops then have the form that a GPU gives them.
+#ifdef PECLET_DEVICE_LOOPS
+inline constexpr bool runs_on_host = false;
+#else
+inline constexpr bool runs_on_host = is_host_memory;
+#endif
 
 }  // namespace peclet

@@ -81,7 +81,7 @@ struct DivideByOpenPart {
     }
     KOKKOS_INLINE_FUNCTION void operator()(int i) const {
       const float part = wx * both(x, i, 1) + wy * both(y, i, sy) + wz * both(z, i, sz);
-      divergence[i] /= Kokkos::max(part, smallest_part);
+      divergence[i] /= part > smallest_part ? part : smallest_part;
     }
   };
   KOKKOS_INLINE_FUNCTION Row row(int j, int k) const {

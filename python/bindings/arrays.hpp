@@ -249,16 +249,17 @@ NumpyArray<T> to_numpy(const std::vector<T>& values, Shape shape = {}, Order ord
 
 inline NumpyArray<double> to_numpy(Vec3 v) { return to_numpy(std::vector<double>{v.x, v.y, v.z}); }
 
-/// Memory that lives as long as owner, without a copy: NumPy on the host, DLPack on a device.
+/// Memory that lives as long as owner, without a copy: a NumPy array on the host; on a device an object that
+/// from_dlpack() of CuPy, PyTorch and JAX takes.
 inline nb::object shared_memory(double* first, const std::vector<std::size_t>& shape,
                                 const nb::capsule& owner, const std::vector<std::int64_t>& strides = {}) {
   const std::int64_t* const steps = strides.empty() ? nullptr : strides.data();
-  if constexpr (runs_on_host)
+  if constexpr (is_host_memory)
     return nb::cast(nb::ndarray<nb::numpy, double>(first, shape.size(), shape.data(), owner, steps),
                     nb::rv_policy::reference);
   else
-    return nb::cast(nb::ndarray<double>(first, shape.size(), shape.data(), owner, steps, nb::dtype<double>(),
-                                        nb::device::cuda::value),
+    return nb::cast(nb::ndarray<nb::array_api, double>(first, shape.size(), shape.data(), owner, steps,
+                                                       nb::dtype<double>(), nb::device::cuda::value),
                     nb::rv_policy::reference);
 }
 

@@ -8,6 +8,7 @@ import pytest
 from peclet import dem
 
 from tests.python.dem_scenes import BOX, leaf, spheres
+from tests.python.views import needs_readable_views
 
 
 def test_state_starts_at_its_defaults_and_grows_beyond_the_capacity():
@@ -45,6 +46,7 @@ def test_fourth_column_is_the_inverse_mass():
     np.testing.assert_allclose(sim.get_positions(), [[0, 0, -0.05], [5, 0, 0]], atol=1e-15)
 
 
+@needs_readable_views
 def test_getters_return_copies_and_views_the_memory():
     sim = spheres([1, 2, 3])
     sim.get_positions()[0] = 9
@@ -57,12 +59,14 @@ def test_getters_return_copies_and_views_the_memory():
     np.testing.assert_allclose(sim.get_positions(), [[9, 11, 10]])
 
 
+@needs_readable_views
 def test_views_outlive_the_simulation():
     view = spheres([1, 2, 3]).get_positions_view()
     gc.collect()
     np.testing.assert_array_equal(view, [[1, 2, 3]])
 
 
+@needs_readable_views
 def test_what_views_wrote_is_checked_by_the_next_step():
     sim = spheres([1, 2, 3])
     sim.get_velocities_view()[0, 1] = np.nan

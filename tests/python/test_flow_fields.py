@@ -6,6 +6,7 @@ from peclet import flow
 from peclet.core import geom
 
 from tests.python.flow_scenes import box_with, face_is_fluid
+from tests.python.views import needs_readable_views
 
 SHAPE = (7, 5, 9)
 
@@ -232,6 +233,7 @@ def test_a_checkpoint_that_does_not_fit_is_refused():
 # ------------------------------------------------------------------------------------------- without a copy
 
 
+@needs_readable_views
 @pytest.mark.parametrize("name", ["u", "v", "w", "p", "heat"])
 def test_views_are_the_memory(values, name):
     solver = flow.Solver(*SHAPE)
@@ -246,6 +248,7 @@ def test_views_are_the_memory(values, name):
     np.testing.assert_array_equal(view, 2 * values)
 
 
+@needs_readable_views
 def test_dlpack_shares_the_memory(values):
     solver = flow.Solver(*SHAPE)
     solver.set_field("p", values)
@@ -257,6 +260,7 @@ def test_dlpack_shares_the_memory(values):
     assert np.shares_memory(np.from_dlpack(copy), copy)
 
 
+@needs_readable_views
 def test_views_outlive_the_solver(values):
     solver = flow.Solver(*SHAPE)
     solver.set_field("p", values)
@@ -265,6 +269,7 @@ def test_views_outlive_the_solver(values):
     np.testing.assert_array_equal(view, values)
 
 
+@needs_readable_views
 def test_what_views_wrote_counts_once_it_is_set(values):
     one, other = flow.Solver(*SHAPE), flow.Solver(*SHAPE)
     for solver in (one, other):

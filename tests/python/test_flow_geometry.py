@@ -298,7 +298,7 @@ def test_a_body_half_a_period_from_its_centre_of_rotation_stays_rigid():
     box_with(solver, ((3.0, 8.0, 8.0), 2.5))
     solver.set_instance_motion(0, (0, 0, 0), (0, 0, 0.02), (11.2, 8.0, 8.0))
     solver.step()
-    inside = solver.diagnostics.field_view("v")[1:6, 8, 8]
+    inside = solver.get_field("v")[1:6, 8, 8]
     nearest_image = np.arange(1, 6)[1:4] - (11.2 - N)
     np.testing.assert_allclose(inside[1:4], 0.02 * nearest_image, atol=1e-12)
 
