@@ -38,6 +38,10 @@ Real ViscousKrylov::multiply(const ViscousSystem& system, const Field<float>& e,
 int ViscousKrylov::solve(const ViscousSystem& system, const ViscousMultigrid& multigrid,
                          const Field<Real>& residual, Real largest, Real reduction, int limit,
                          const Field<float>& e, const Field<float>& r) {
+  if (largest == 0) {
+    e.fill(0);
+    return 0;
+  }
   const Layout layout = system.layout();
   const SweepPlan& plan = *system.plan;
   const RowRanges& rows = system.rows;

@@ -140,6 +140,9 @@ void expect_solved(const Flow& flow, const FaceVector<Real>& carrier, Real diffu
     const ViscousSystem system = advected(flow, c, diffusion, carrier, dt);
     ViscousSolver solver(layout);
     Real left_over = 0;
+    const Field<Real> nothing("nothing", layout);
+    EXPECT_EQ(solver.solve(system, nothing, correction, 1e-8, 1, 200, left_over).iterations, 0);
+    EXPECT_EQ(plain_norms(flow, c, correction).largest, 0);
     const SolverReport report = solver.solve(system, residual, correction, 1e-8, 1, 200, left_over);
     EXPECT_TRUE(report.converged);
     EXPECT_LE(report.iterations, most);
