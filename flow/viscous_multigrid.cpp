@@ -216,6 +216,7 @@ struct FinestLevel {
                  wall(system.fixed_rows), wall(system.moving_rows), ghosts_of(system, e));
   }
 
+  /// Adds what the coarse levels find and smooths it.
   void correct_from_below(const OuterPoints& outer) const {
     const SweepPlan& plan = *system.plan;
     multigrid.apply_below();
