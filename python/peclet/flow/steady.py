@@ -90,7 +90,7 @@ def march_to_steady(
     if not callable(monitor):
         raise _checks.wrong_type("monitor", "a function of the solver", monitor)
 
-    read_monitor = functools.partial(monitor, *[solver][: _number_of_arguments(monitor, otherwise=1)])
+    read_monitor = functools.partial(monitor, *[solver][: _number_of_arguments(monitor)])
 
     settling = _Settling(rtol, num_passes, slow_rate, roundoff)
     mixing = _Anderson(window) if accelerate else None
@@ -184,20 +184,20 @@ class _Anderson:
         return weights / weights.sum()
 
 
-def _number_of_arguments(function: Callable[..., Any], otherwise: int) -> int:
-    """How many arguments without a default a function takes, if it tells."""
+def _number_of_arguments(function: Callable[..., Any]) -> int:
+    """How many arguments without a default a function takes; one if it does not tell or takes any."""
     try:
         parameters = inspect.signature(function).parameters.values()
     except ValueError:
-        return otherwise
+        return 1
     positional = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
     if any(p.kind == inspect.Parameter.VAR_POSITIONAL for p in parameters):
-        return otherwise
+        return 1
     return sum(p.kind in positional and p.default is inspect.Parameter.empty for p in parameters)
 
 
 def _report(callback: Callable[..., object], result: SteadyResult, is_accelerated: bool) -> object:
-    if _number_of_arguments(callback, otherwise=1) == 2:
+    if _number_of_arguments(callback) == 2:
         return callback(result.steps, "accelerate" if is_accelerated else "certify")
     return callback(result)
 
