@@ -213,18 +213,20 @@ SolveReport conjugate_gradient(const PressureEquation& equation, const Multigrid
   };
 
   Real known = recompute();
+  Real peak = known;  // since the residual was last recomputed: what single precision loses is a part of it
   int setbacks = 0;
   while (!report.converged && report.iterations < settings.max_iterations && std::isfinite(known)) {
     const Norms norms = iteration.advance();
     const bool failed = !std::isfinite(norms.squares);
     if (!failed) ++report.iterations;
     const Real carried = std::sqrt(norms.squares);
+    if (carried > peak) peak = carried;
     const bool seems_converged = carried <= tolerance && norms.largest <= settings.residual_limit;
-    if (!failed && !seems_converged && carried > trusted_reduction * known &&
+    if (!failed && !seems_converged && carried > trusted_reduction * peak &&
         report.iterations < settings.max_iterations)
       continue;
     const Real before = known;
-    known = recompute();
+    known = peak = recompute();
     if (failed || known > 2 * carried) iteration.forget_search();
     if (known > 0.5 * before && ++setbacks == 2) break;
   }

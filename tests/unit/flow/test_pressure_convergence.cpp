@@ -9,11 +9,11 @@ namespace {
 using namespace testing;
 
 SolveReport solve_random(const Int3& n, const Real3& spacing, const PressureSides& sides, const Faces& faces,
-                         Real tolerance = 1e-6) {
+                         Real tolerance = 1e-6, unsigned seed = 21) {
   const auto open = make_faces(n, sides, faces);
   PressureSolver solver(Grid{n, spacing, {0, 0, 0}}, sides);
   solver.set_open_fractions(open, RowRanges(n));
-  const Field<Real> rhs = random_field(n, 21, 0.1), phi("phi", Layout(n));
+  const Field<Real> rhs = random_field(n, seed, 0.1), phi("phi", Layout(n));
   for_cells(n, [&](int i, int j, int k) {
     rhs(i, j, k) += std::sin(2 * M_PI * i / n[0]) + std::cos(2 * M_PI * (j + 2.0 * k) / (n[1] + n[2]));
   });
@@ -189,15 +189,24 @@ TEST(PressureConvergence, FollowsRegionsThatJoinAndPart) {
 }
 
 TEST(PressureConvergence, CopesWithNarrowGaps) {
-  // Two chambers joined by one face that is open by one part in 32768.
+  // Two chambers joined by one face, open like the smallest slit or by one part in 32768. The coarse levels
+  // do not see the wall between them. The difference of the two pressures takes a dozen iterations, and where
+  // it exceeds what single precision resolves beside the rest, another dozen.
   const Int3 n{40, 32, 36};
-  const auto gap = [](int axis, int i, int j, int k) {
-    if (axis != 2 || (k != 0 && k != 18)) return fully_open;
-    return k == 18 && i == 20 && j == 16 ? OpenFraction{1} : OpenFraction{0};
+  struct Gap {
+    OpenFraction open;
+    int most;
   };
-  const SolveReport report = solve_random(n, {1, 1, 1}, PressureSides(), gap);
-  EXPECT_TRUE(report.converged);
-  EXPECT_LE(report.iterations, 25);
+  for (const Gap& gap : {Gap{fully_open / 64, 20}, Gap{1, 35}})
+    for (unsigned seed = 21; seed < 27; ++seed) {
+      const auto faces = [&](int axis, int i, int j, int k) {
+        if (axis != 2 || (k != 0 && k != 18)) return fully_open;
+        return k == 18 && i == 20 && j == 16 ? gap.open : OpenFraction{0};
+      };
+      const SolveReport report = solve_random(n, {1, 1, 1}, PressureSides(), faces, 1e-6, seed);
+      EXPECT_TRUE(report.converged);
+      EXPECT_LE(report.iterations, gap.most) << gap.open << ' ' << seed;
+    }
 }
 
 TEST(PressureConvergence, CopesWithFacesOpenAtRandom) {
