@@ -7,6 +7,7 @@ import pytest
 from peclet.coupling import checkpoint
 
 from tests.python.coupling_scenes import TOUCHING, build
+from tests.same import assert_same
 
 
 @pytest.mark.parametrize("suffix", ["npz", "h5"])
@@ -21,9 +22,9 @@ def test_goes_on_from_a_file_bit_by_bit(tmp_path, suffix):
     second.run(3, progress=False)
     assert second.number_of_steps == 6
     for name, array in whole.history.items():
-        assert np.array_equal(second.history[name], array), name
+        assert_same(second.history[name], array, name)
     for name, array in whole.state().items():
-        assert np.array_equal(second.state()[name], array), name
+        assert_same(second.state()[name], array, name)
 
 
 def lying_on_each_other():
@@ -45,7 +46,7 @@ def test_goes_on_bit_by_bit_while_bodies_touch():
     for simulation in (whole, second):
         simulation.run(3, progress=False)
     for name, array in whole.state().items():
-        assert np.array_equal(second.state()[name], array), name
+        assert_same(second.state()[name], array, name)
 
 
 def test_refuses_contacts_of_particles_that_are_not_there():
