@@ -59,6 +59,27 @@ void impose_wall_velocity(const Slits& slits, const Field<Real>& velocity) {
   impose_values(slits.count, slits.face, slits.wall_velocity, velocity);
 }
 
+void to_velocity_with_friction(const Slits& slits, const Field<Real>& velocity) {
+  const Slits source = slits;
+  const Field<Real> u = velocity;
+  for_each(
+      "flow::slit_velocity_with_friction", slits.count, KOKKOS_LAMBDA(Index n) {
+        const Index face = source.face(n);
+        const Real wall = source.wall_velocity(n);
+        u[face] = wall + (u[face] - wall) / (1 + source.friction(n));
+      });
+}
+
+void to_velocity_without_friction(const Slits& slits, const Field<Real>& velocity) {
+  const Slits source = slits;
+  const Field<Real> u = velocity;
+  for_each(
+      "flow::slit_velocity_without_friction", slits.count, KOKKOS_LAMBDA(Index n) {
+        const Index face = source.face(n);
+        u[face] += source.friction(n) * (u[face] - source.wall_velocity(n));
+      });
+}
+
 void impose_wall_velocity_where_uncovered(const Slits& slits, int body, const Field<OpenFraction>& open,
                                           const Field<Real>& velocity) {
   const Slits source = slits;

@@ -9,6 +9,9 @@
 // velocity without friction, w = (1 + lambda) u - lambda U, and the flux through a face of open part O is
 //   O u + (1 - O) U = o w + (1 - o) U  with the open fraction  o = O / (1 + lambda):
 // slits are open to inertia and closed to creeping flow, for which the no-slip wall lets nothing through.
+//
+// Between steps slits hold w. A step in which the body moves changes lambda, and turns slits into points of
+// the fluid and back: they pass on u. A point of the fluid that took w would exceed it (1 + lambda) times.
 #include "flow/momentum.hpp"
 #include "flow/near_cells.hpp"
 #include "flow/solid_sampler.hpp"
@@ -49,6 +52,10 @@ void refresh_slits(int c, const SolidSampler& solid, const Slits& slits);
 
 /// velocity = U.
 void impose_wall_velocity(const Slits& slits, const Field<Real>& velocity);
+
+/// velocity: from w to u, and back.
+void to_velocity_with_friction(const Slits& slits, const Field<Real>& velocity);
+void to_velocity_without_friction(const Slits& slits, const Field<Real>& velocity);
 
 /// velocity = U where body moved away from a slit and left a fluid point.
 void impose_wall_velocity_where_uncovered(const Slits& slits, int body, const Field<OpenFraction>& open,

@@ -216,7 +216,11 @@ void Solver::update_geometry() {
   impose_body_motion();
   const std::vector<int> leaping = bodies_that_leap();
   take_requested_poses();
-  for (int c = 0; c < 3; ++c) covered_points_.remember(c, boundary_.moving_rows(c));
+  for (int c = 0; c < 3; ++c) {
+    covered_points_.remember(c, boundary_.moving_rows(c));
+    for (const Field<Real>& u : {velocity_[c], previous_[c]})
+      to_velocity_with_friction(boundary_.slits(c), u);
+  }
   boundary_.update(bodies_, pressure_, wall_friction(), hydrostatic_force());
   pressure_solver_.update_open_fractions(boundary_.changed());
   if (!boundary_.changed().empty()) scalars_.geometry_changed();
@@ -228,6 +232,9 @@ void Solver::update_geometry() {
     for (int c = 0; c < 3; ++c)
       for (const Field<Real>& u : {velocity_[c], previous_[c]})
         impose_wall_velocity_where_uncovered(boundary_.former_slits(c), b, boundary_.open()[c], u);
+  for (int c = 0; c < 3; ++c)
+    for (const Field<Real>& u : {velocity_[c], previous_[c]})
+      to_velocity_without_friction(boundary_.slits(c), u);
   impose_body_motion();
   geometry_stale_ = false;
   wall_velocity_stale_ = false;
