@@ -93,7 +93,7 @@ CASES = (
         full=lambda curves: (
             towed_with_inertia(1, 40, 5e-3)[0]
             + towed_and_at_rest(20, 300, 5e-3)
-            + towed_and_at_rest(100, 600, 5e-3)
+            + towed_and_at_rest(100, 600, 5e-3, noise_bound=0.013)
         ),
     ),
     Case(
